@@ -87,7 +87,8 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   result.json["process"] = forecast_json(expected);
   if (expected)
     result.json["artefacts"] = {
-        {"bent_rays", expected->bent_rays ? bent_rays_json(*expected->bent_rays) : json(nullptr)}};
+        {"bent_rays", expected->bent_rays ? bent_rays_json(*expected->bent_rays) : json(nullptr)},
+        {"seen_bend", expected->seen_bend}};
   std::string& text = result.text;
   text = fmt::format("volume ({}{}{})\n", info.format, info.dataset.empty() ? "" : ", ", info.dataset);
   if (!info.found_by.empty()) text += fmt::format("  found by     {}\n", info.found_by);
@@ -104,7 +105,8 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
                       mib_of(info.stored.logical_bytes));
   if (unmeasured.left_out()) text += fmt::format("  outside      about {}\n", describe(unmeasured));
   if (expected) {
-    text += fmt::format("  artefacts    {}\n", rays_text({expected->bent_rays, {}, {}}, volume->frame()));
+    text += fmt::format("  artefacts    {}\n",
+                        rays_text({expected->bent_rays, {}, {}, expected->seen_bend}, volume->frame()));
     if (expected->bent_rays) text += fmt::format("               {}\n", kAdviceForBentRays);
   }
   text += forecast_text(expected);

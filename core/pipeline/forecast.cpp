@@ -124,7 +124,9 @@ Result<Forecast> forecast(SlabSource& scan, const RunShape& wanted, Detail detai
         std::clamp(filtering / (kPlannedPass * passes * static_cast<double>(part.count())), kQuickest, kSlowest);
   run.read_s /= run.slowness;
   if (look_for_rays) {
-    DUBSAR_ASSIGN(result.bent_rays, look_for_bent_rays({scan, 1.0}, scan, {clock, progress}));
+    DUBSAR_ASSIGN(RaysLook look, look_for_bent_rays({scan, 1.0}, scan, {clock, progress}));
+    result.bent_rays = std::move(look.bent);
+    result.seen_bend = look.seen_bend;
     if (result.bent_rays) plan_straightening(run, *result.bent_rays, room);
   }
   result.cost = cost_of(run, thread_count());

@@ -18,6 +18,8 @@ namespace {
 constexpr std::int64_t kQuickWidest = 128, kFineWidest = 320;
 /// How far from the other material clay and air are sure: a part of the longest axis, but a few cells at least.
 constexpr std::int64_t kMarginOfWidth = 43, kLeastRaysMargin = 3;
+/// Of the air's unevenness that the right axis leaves in the halved grid.
+constexpr double kMostAirOfAxis = 0.7;
 /// Slices of a large grid do not stay in the caches as those of the search do.
 constexpr double kLargeFactor = 1.5;
 
@@ -28,8 +30,8 @@ Result<CurveSearch> search_in(SlabSource& source, std::int64_t widest, const Cur
   const Dims d = coarse.volume.dims;
   const std::int64_t margin = std::max(kLeastRaysMargin, std::max({d.x, d.y, d.z}) / kMarginOfWidth);
   const double step = static_cast<double>(coarse.cell) * voxels_a_step;
-  const auto in_steps = [](const std::shared_ptr<const StrayField>& stray, double voxels) {
-    return stray ? std::make_shared<const StrayField>(stray->in_steps_of(voxels)) : nullptr;
+  const auto in_steps = [](const std::shared_ptr<const ScatterField>& stray, double voxels) {
+    return stray ? std::make_shared<const ScatterField>(stray->in_steps_of(voxels)) : nullptr;
   };
   const std::optional<TurnAxis> only = known ? std::optional(known->axis) : std::nullopt;
   DUBSAR_ASSIGN(CurveSearch search, search_curve(coarse.volume, margin, only,
@@ -45,7 +47,7 @@ Result<Straightened> straighten_grid(GridStore& grid, const BentRays& bent, doub
   run.clock.start("straighten", "voxel");
   run.progress.begin("straighten", grid.dims().count(), "voxel");
   StraightenOptions options{bent.axis, bent.levels, bent.curve.in_steps_of(voxels_a_step)};
-  if (bent.stray) options.stray = std::make_shared<const StrayField>(bent.stray->in_steps_of(voxels_a_step));
+  if (bent.stray) options.stray = std::make_shared<const ScatterField>(bent.stray->in_steps_of(voxels_a_step));
   DUBSAR_ASSIGN(Straightened done, straighten(grid, options, run.progress));
   done.axis_shift.pixels *= voxels_a_step;
   run.clock.finish(grid.dims().count());
@@ -55,9 +57,11 @@ Result<Straightened> straighten_grid(GridStore& grid, const BentRays& bent, doub
 Result<GridStore> copy_of(GridStore& grid, GridPlace place, const Budget& budget) {
   const Dims dims = grid.dims();
   DUBSAR_ASSIGN(GridStore copy, GridStore::create(dims, grid.frame(), place, budget));
-  for (std::int64_t z = 0; z < dims.z; ++z) {
-    DUBSAR_TRY(grid.read(z, z + 1, copy.page(z, z + 1)));
-    DUBSAR_TRY(copy.store(z, z + 1));
+  constexpr std::int64_t kSlicesAtOnce = 32;
+  for (std::int64_t z = 0; z < dims.z; z += kSlicesAtOnce) {
+    const std::int64_t end = std::min(dims.z, z + kSlicesAtOnce);
+    DUBSAR_TRY(grid.read(z, end, copy.page(z, end)));
+    DUBSAR_TRY(copy.store(z, end));
   }
   return copy;
 }
@@ -68,11 +72,10 @@ Result<Straightened> straighten_imported(ImportedGrid& imported, const BentRays&
   CountedGrid& half = imported.grid;
   Straightened done;
   if (imported.detail.resample()) {
-    DUBSAR_ASSIGN(GridStore grid, copy_of(half.grid, place, budget));
-    DUBSAR_ASSIGN(done, straighten_grid(grid, bent, 2.0, run));
-    DUBSAR_ASSIGN(half.counts, count_values(grid, run.progress));
-    DUBSAR_ASSIGN(half.grid, copy_of(grid, place_for(grid.dims(), budget), budget));
-    imported.straightened = std::make_unique<GridStore>(std::move(grid));
+    DUBSAR_ASSIGN(done, straighten_grid(half.grid, bent, 2.0, run));
+    DUBSAR_ASSIGN(half.counts, count_values(half.grid, run.progress));
+    DUBSAR_ASSIGN(GridStore kept, copy_of(half.grid, place, budget));
+    imported.straightened = std::make_unique<GridStore>(std::move(kept));
   } else {
     DUBSAR_ASSIGN(CountedGrid scan, read_grid(*imported.scan, false, place, budget, run));
     DUBSAR_ASSIGN(done, straighten_grid(scan.grid, bent, 1.0, run));
@@ -83,9 +86,37 @@ Result<Straightened> straighten_imported(ImportedGrid& imported, const BentRays&
   return done;
 }
 
+/// In the halved grid, where rays are straight.
+Result<std::optional<BentRays>> look_for_axis_alone(GridStore& half, const GreyLevels& levels, StageRun run) {
+  if (!(levels.contrast() > 0.0)) return std::nullopt;
+  run.clock.start("axis", "voxel");
+  const double before_s = process_cpu_seconds();
+  std::optional<BentRays> found;
+  double least = kMostAirOfAxis, crossings = 0.0;
+  for (const TurnAxis axis : {TurnAxis::kZ, TurnAxis::kY, TurnAxis::kX}) {
+    if (run.progress.cancelled()) return cancelled_error();
+    StraightenOptions options{axis, levels, {}};
+    options.curve.longest = static_cast<double>(std::max({half.dims().x, half.dims().y, half.dims().z}));
+    DUBSAR_ASSIGN(const AxisShift shift, find_shift_in(half, options));
+    crossings += crossings_of(half.dims(), axis);
+    log_debug("axis {}: off by {:.2f} voxel{}, {:.2f} of the air's unevenness left", "xyz"[static_cast<int>(axis)],
+              2.0 * shift.pixels, shift.flipped ? ", flipped" : "", shift.left);
+    if (shift.left >= least) continue;
+    least = shift.left;
+    found.emplace();
+    found->axis = axis;
+    found->levels = levels;
+    found->curve = options.curve.in_steps_of(0.5);
+    found->longest_vox = found->curve.longest;
+  }
+  run.clock.finish(half.dims().count());
+  if (found) found->crossing_s = kLargeFactor * (process_cpu_seconds() - before_s) / crossings;
+  return found;
+}
+
 }  // namespace
 
-Result<std::optional<BentRays>> look_for_bent_rays(Overview overview, SlabSource& scan, StageRun run) {
+Result<RaysLook> look_for_bent_rays(Overview overview, SlabSource& scan, StageRun run) {
   run.clock.start("rays", "voxel");
   run.progress.begin("rays", 0, "voxel");
   const double before_s = process_cpu_seconds();
@@ -97,7 +128,10 @@ Result<std::optional<BentRays>> look_for_bent_rays(Overview overview, SlabSource
     if (!search.found) search = quick;  // at a finer grid noise can hide what is there
   }
   run.clock.finish(std::max<std::int64_t>(1, quick.crossings));
-  if (!search.found) return std::nullopt;
+  RaysLook look;
+  look.levels = quick.levels;
+  for (const CurveTrial& trial : quick.trials) look.seen_bend = std::max(look.seen_bend, trial.bend());
+  if (!search.found) return look;
   const CurveTrial& found = *search.found;
   BentRays bent;
   bent.axis = found.axis;
@@ -110,7 +144,8 @@ Result<std::optional<BentRays>> look_for_bent_rays(Overview overview, SlabSource
   bent.contrast = bent.curve.contrast();
   bent.cut_by_border = search.cut_by_border;
   bent.crossing_s = kLargeFactor * search_s / static_cast<double>(quick.crossings);
-  return std::optional(bent);
+  look.bent = bent;
+  return look;
 }
 
 void plan_straightening(RunShape& run, const BentRays& bent, std::uint64_t room) {
@@ -122,7 +157,12 @@ void plan_straightening(RunShape& run, const BentRays& bent, std::uint64_t room)
 Result<RaysReport> straighten_rays(ImportedGrid& imported, RunShape& shape, std::uint64_t room, const Budget& budget,
                                    StageRun run) {
   RaysReport report;
-  DUBSAR_ASSIGN(report.bent, look_for_bent_rays({imported.grid.grid, 2.0}, *imported.scan, run));
+  DUBSAR_ASSIGN(const RaysLook look, look_for_bent_rays({imported.grid.grid, 2.0}, *imported.scan, run));
+  report.bent = look.bent;
+  report.seen_bend = look.seen_bend;
+  if (!report.bent) {
+    DUBSAR_ASSIGN(report.bent, look_for_axis_alone(imported.grid.grid, look.levels, run));
+  }
   if (!report.bent) return report;
   const RunShape before = shape;
   plan_straightening(shape, *report.bent, room);

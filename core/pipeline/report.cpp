@@ -97,6 +97,7 @@ json artefacts_json(const PipelineReport& report) {
   json result{{"bent_rays", rays.bent ? bent_rays_json(*rays.bent) : json(nullptr)},
               {"straightened", rays.straightened.has_value()},
               {"axis_shift_vox", rays.straightened ? json(rays.straightened->axis_shift.pixels) : json(nullptr)},
+              {"seen_bend", rays.seen_bend},
               {"text", rays_text(rays, report.scan.frame)}};
   if (!rays.why_not.empty()) result["why_not"] = rays.why_not;
   if (rays.bent) result["advice"] = kAdviceForBentRays;
@@ -207,7 +208,11 @@ json bent_rays_json(const BentRays& bent) {
   return {{"axis", std::string(1, "xyz"[static_cast<int>(bent.axis)])},
           {"longest_ray_vox", bent.longest_vox},
           {"contrast_on_longest_ray", bent.contrast},
-          {"curve", {{"coefficients", bent.curve.coefficients}, {"longest_recorded_vox", bent.curve.longest}}},
+          {"curve",
+           {{"coefficients", bent.curve.coefficients},
+            {"longest_recorded_vox", bent.curve.longest},
+            {"stray", bent.curve.stray},
+            {"stray_spread_vox", bent.stray ? json(bent.stray->spread()) : json(nullptr)}}},
           {"uneven_air", {{"before", bent.before.air}, {"after", bent.after.air}}},
           {"uneven_clay", {{"before", bent.before.clay}, {"after", bent.after.clay}}},
           {"cut_by_border", bent.cut_by_border}};

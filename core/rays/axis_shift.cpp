@@ -15,7 +15,9 @@ using kernels::kLanes;
 /// Of the air that is looked at from clay, in pixels: nearer there are edges, farther only noise.
 constexpr std::int64_t kNearest = 4, kFarthest = 14;
 /// Shifts that are made; what lies between is interpolated between their images.
-constexpr double kTried = 0.75, kMost = 1.0, kStep = 1.0 / 64.0;
+constexpr double kTried = 0.75, kMost = 1.25, kStep = 1.0 / 64.0;
+/// Around the shift that was found, where waves of some pixels are no parabola over kTried any more: 1 is found as .9.
+constexpr double kTriedFiner = 0.25;
 constexpr double kLeast = 0.08, kMostAirShare = 0.9;
 
 using Energy = std::array<std::array<double, 3>, 3>;
@@ -74,8 +76,8 @@ Energy energy_of(const std::array<const LaneImage*, 3>& images, const std::vecto
       sum_of);
 }
 
-double energy_at(const Energy& energy, double shift) {
-  const double t = shift / kTried;
+/// Of the image between three that are `step` apart, `t` steps from the middle one.
+double energy_at(const Energy& energy, double t) {
   const std::array<double, 3> weight{0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)};
   double sum = 0.0;
   for (std::size_t i = 0; i < 3; ++i)
@@ -96,8 +98,9 @@ void shift_rays(const LaneSinogram& in, const AxisShift& shift, LaneSinogram& ou
 
 AxisShift find_axis_shift(const ParallelRays& rays, const LaneImage& planes, const LaneSinogram& recorded,
                           const BendOfRow& bend) {
-  std::vector<std::vector<std::uint8_t>> air;
-  for (std::int64_t lane = 0; lane < kLanes; lane += 2) air.push_back(air_beside(planes, lane));
+  std::vector<std::vector<std::uint8_t>> air(static_cast<std::size_t>(kLanes / 2));
+  parallel_for(kLanes / 2, 1,
+               [&](std::int64_t pair) { air[static_cast<std::size_t>(pair)] = air_beside(planes, 2 * pair); });
   LaneSinogram moved = rays.sinogram();
   const auto image_with = [&](const AxisShift& shift) {
     LaneImage image = rays.image();
@@ -119,18 +122,27 @@ AxisShift find_axis_shift(const ParallelRays& rays, const LaneImage& planes, con
   };
   const LaneImage unmoved = image_with({});
   AxisShift best;
-  double least = 0.0;
+  double as_it_is = 0.0;
   for (const bool flipped : {false, true}) {
     const LaneImage before = image_with({-kTried, flipped}), after = image_with({kTried, flipped});
     const Energy energy = energy_of({&before, &unmoved, &after}, air);
-    const double as_it_is = energy_at(energy, 0.0);
+    as_it_is = energy_at(energy, 0.0);
     if (!(as_it_is > 0.0)) continue;
     for (double shift = -kMost; shift <= kMost; shift += kStep) {
-      const double left = energy_at(energy, shift) / as_it_is;
-      if (std::abs(shift) < kLeast || left > kMostAirShare || (best.pixels != 0.0 && left >= least)) continue;
-      best = {shift, flipped};
-      least = left;
+      const double left = energy_at(energy, shift / kTried) / as_it_is;
+      if (std::abs(shift) < kLeast || left > kMostAirShare || (best.pixels != 0.0 && left >= best.left)) continue;
+      best = {shift, flipped, left};
     }
+  }
+  if (best.pixels == 0.0) return best;
+  const double around = best.pixels;
+  const LaneImage before = image_with({around - kTriedFiner, best.flipped}),
+                  middle = image_with({around, best.flipped}), after = image_with({around + kTriedFiner, best.flipped});
+  const Energy energy = energy_of({&before, &middle, &after}, air);
+  best.left = energy_at(energy, 0.0) / as_it_is;
+  for (double off = -kTriedFiner; off <= kTriedFiner; off += kStep / 2.0) {
+    const double left = energy_at(energy, off / kTriedFiner) / as_it_is;
+    if (left < best.left) best = {around + off, best.flipped, left};
   }
   return best;
 }

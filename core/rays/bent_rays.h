@@ -9,11 +9,12 @@
 
 namespace dubsar {
 
-/// Rays that arrive weaker than straight ones: scatter and hardening.
+/// Rays that arrive weaker than straight ones: scatter and hardening. Where only the axis of rotation was off, the
+/// curve is straight.
 struct BentRays {
-  TurnAxis axis = TurnAxis::kZ;                  ///< of the scan, about which the scanner turned
-  RayCurve curve;                                ///< lengths in voxels of the scan
-  std::shared_ptr<const StrayField> stray = {};  ///< in voxels of the scan, where scatter varies over the detector
+  TurnAxis axis = TurnAxis::kZ;                    ///< of the scan, about which the scanner turned
+  RayCurve curve;                                  ///< lengths in voxels of the scan
+  std::shared_ptr<const ScatterField> stray = {};  ///< in voxels of the scan, where scatter varies over the detector
   GreyLevels levels;
   Evenness before, after;
   double longest_vox = 0.0;  ///< straight length of the longest ray in clay, voxels of the scan
@@ -26,6 +27,8 @@ struct RaysReport {
   std::optional<BentRays> bent;              ///< nothing: none that is significant
   std::optional<Straightened> straightened;  ///< nothing: rays are as they were; shifts in voxels of the scan
   std::string why_not;                       ///< one sentence, where rays are bent and stay so
+  double seen_bend =
+      0.0;  ///< the largest bend (CurveTrial) that was seen and not taken for one; 0: none was looked for
 };
 
 /// "rays through 45 mm of clay arrive with 26 % of their contrast (scatter, hardening); straightened"

@@ -127,7 +127,7 @@ Result<std::optional<CurveTrial>> try_axis(const Volume<float>& volume, const Su
 
 /// By the first powers and those of what scatter adds. The images of the last terms are those of the field then.
 Result<std::optional<CurveTrial>> try_stray(const SureMaterials& sure, AxisView& view,
-                                            std::shared_ptr<const StrayField> field, Progress& progress) {
+                                            std::shared_ptr<const ScatterField> field, Progress& progress) {
   const ParallelRays& rays = view.rays;
   std::vector<LaneSinogram> x;
   struct Largest {
@@ -189,15 +189,17 @@ Result<std::optional<CurveTrial>> try_stray(const SureMaterials& sure, AxisView&
 
 /// The field that makes clay and air most even: its spread first, then how much light clay absorbs, then both finer.
 Result<std::optional<CurveTrial>> search_stray(const Volume<float>& volume, const SureMaterials& sure, AxisView& view,
-                                               Progress& progress) {
+                                               std::int64_t& crossings, Progress& progress) {
   const CoarseRays coarse = look_coarsely(volume, view.axis, sure.levels);
   std::optional<CurveTrial> best;
   double best_spread = 0.0, best_absorbed = 1.5;  // of the width; of the longest ray
   const auto look = [&](double spread, double absorbed) -> Result<void> {
+    crossings += static_cast<std::int64_t>(view.groups() * RayCurve::kStrayTerms) * kLanes * view.at.width *
+                 view.at.height * view.rays.directions();
     DUBSAR_ASSIGN(std::optional<CurveTrial> trial,
                   try_stray(sure, view,
-                            std::make_shared<StrayField>(coarse, absorbed / static_cast<double>(view.longest),
-                                                         spread * coarse.width),
+                            std::make_shared<ScatterField>(coarse, absorbed / static_cast<double>(view.longest),
+                                                           spread * coarse.width),
                             progress));
     if (trial && (!best || trial->after.sum() < best->after.sum())) {
       best = std::move(trial);
@@ -244,7 +246,7 @@ bool CurveTrial::significant() const noexcept {
 }
 
 Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margin, std::optional<TurnAxis> only,
-                                 std::shared_ptr<const StrayField> known, Progress& progress) {
+                                 std::shared_ptr<const ScatterField> known, Progress& progress) {
   CurveSearch search;
   const Result<SureMaterials> sure = find_sure_materials(volume, margin);
   if (!sure || sure->air < kLeastSure || sure->clay < kLeastSure || !(sure->levels.contrast() > 0.0)) return search;
@@ -271,7 +273,7 @@ Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margi
     if (known) {
       DUBSAR_ASSIGN(stray, try_stray(*sure, *most_bent, known, progress));
     } else {
-      DUBSAR_ASSIGN(stray, search_stray(volume, *sure, *most_bent, progress));
+      DUBSAR_ASSIGN(stray, search_stray(volume, *sure, *most_bent, search.crossings, progress));
     }
     if (stray && stray->significant() &&
         (!search.found || stray->after.sum() < kLeftByStray * search.found->after.sum()))

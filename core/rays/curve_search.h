@@ -8,7 +8,7 @@
 #include "core/base/progress.h"
 #include "core/rays/lane_planes.h"
 #include "core/rays/ray_curve.h"
-#include "core/rays/stray_field.h"
+#include "core/rays/scatter_field.h"
 
 namespace dubsar {
 
@@ -22,7 +22,7 @@ struct Evenness {
 struct CurveTrial {
   TurnAxis axis = TurnAxis::kZ;
   RayCurve curve;
-  std::shared_ptr<const StrayField> stray = {};  ///< where the curve has a part by scatter
+  std::shared_ptr<const ScatterField> stray = {};  ///< where the curve has a part by scatter
   Evenness before, after;
   /// 1: rays are straight; the largest loss of contrast is its inverse.
   double bend() const noexcept { return 1.0 / curve.contrast(); }
@@ -45,10 +45,9 @@ struct CurveSearch {
 /// >= 0 of the images R^-1 p^k against 1 in clay and 0 in air, each with the same weight ([Kachelriess 2006]). For
 /// volumes of some hundred voxels a side; cost: about 7 projections of 32 planes an axis. `margin`: distance of what
 /// counts as clay and as air from the other, in voxels. Where that leaves much, scatter is taken for a field over the
-/// detector (StrayField), whose spread and absorption are searched for about the axis that leaves least, or as they are
-/// `known`, in voxels of the volume. Nothing is found where there is too little of either. Errors:
-/// kCancelled.
+/// detector (ScatterField), whose spread and absorption are searched for about the axis that leaves least, or as they
+/// are `known`, in voxels of the volume. Nothing is found where there is too little of either. Errors: kCancelled.
 Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margin, std::optional<TurnAxis> only,
-                                 std::shared_ptr<const StrayField> known, Progress& progress);
+                                 std::shared_ptr<const ScatterField> known, Progress& progress);
 
 }  // namespace dubsar

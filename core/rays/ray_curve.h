@@ -9,8 +9,8 @@ namespace dubsar {
 
 /// g(p) = sum over k of coefficients[k] p (p / longest)^k + longest (stray[0] x + stray[1] x^2 + stray[2] x^4), x = s
 /// e^(absorbed p) / stray_unit: the straight length of a ray from its recorded one, both in voxels of clay, where
-/// scatter is s (StrayField). Coefficients are >= 0, as scatter and hardening make them: -log(1 - x) and the inverse of
-/// a concave curve have positive Taylor coefficients.
+/// scatter is s (ScatterField). Coefficients are >= 0, as scatter and hardening make them: -log(1 - x) and the inverse
+/// of a concave curve have positive Taylor coefficients.
 struct RayCurve {
   static constexpr std::size_t kTerms = 6;
   static constexpr std::size_t kStrayTerms = 3, kPlainTerms = kTerms - kStrayTerms;  ///< where there is a stray field

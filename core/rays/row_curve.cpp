@@ -13,7 +13,7 @@ constexpr double kFrom = -0.25, kTo = 1.25;  ///< parts of the longest ray
 
 }  // namespace
 
-RowCurve::RowCurve(const RayCurve& curve, const StrayField* field, std::int64_t directions, std::int64_t bins)
+RowCurve::RowCurve(const RayCurve& curve, const ScatterField* field, std::int64_t directions, std::int64_t bins)
     : curve_(curve), field_(field), directions_(directions), bins_(bins) {
   const double step = (kTo - kFrom) * curve.longest / kCurveSteps;
   for (Table* table : {&plain_, &growth_}) {

@@ -61,6 +61,14 @@ double crossings_of(const Dims& grid, TurnAxis axis) noexcept {
   return 2.0 * static_cast<double>(grid.count()) * static_cast<double>(directions) / static_cast<double>(together);
 }
 
+Result<AxisShift> find_shift_in(GridStore& grid, const StraightenOptions& options) {
+  if (!grid.in_memory() && options.axis != TurnAxis::kZ) return AxisShift{};
+  const PlaneStrides at = planes_across(grid.dims(), options.axis);
+  const ParallelRays rays(at.width, at.height, directions_for(at));
+  const RowCurve curve(options.curve, options.stray.get(), rays.directions(), rays.bins());
+  return look_for_shift(grid, at, options, rays, curve);
+}
+
 Result<Straightened> straighten(GridStore& grid, const StraightenOptions& options, Progress& progress) {
   const Dims dims = grid.dims();
   const PlaneStrides at = planes_across(dims, options.axis);

@@ -12,6 +12,7 @@ namespace {
 
 struct NamedScanner {
   const char *name, *scanner;
+  double wedge_vox = 7.0;  ///< depth of a usual wedge
 };
 
 constexpr const char* kHalf = "turn=half,cone=0";
@@ -34,6 +35,9 @@ constexpr NamedScanner kOfHalfATurn[] = {
     {"mild", "mild"},
     {"medium", "medium"},
     {"strong", "strong"},
+    {"medium small wedges", "medium", 4.0},
+    {"strong small wedges", "strong", 4.0},
+    {"dense clay", "strong,scatter=0.3,clay=2.4"},
     {"strong but 180 kV", "strong,kv=180,filter=2"},
     {"strong but scatter 3 %", "strong,scatter=0.03,glare=0"},
 };
@@ -43,7 +47,10 @@ constexpr NamedScanner kOfAFullTurn[] = {{"cone", "ideal"},
                                          {"cone good", "good"},
                                          {"cone mild", "mild"},
                                          {"cone medium", "medium"},
-                                         {"cone strong", "strong"}};
+                                         {"cone strong", "strong"},
+                                         {"cone 10 degrees medium", "medium,cone=10"},
+                                         {"cone 10 degrees strong", "strong,cone=10"},
+                                         {"cone strong small wedges", "strong", 4.0}};
 
 /// Mean and half of the range.
 std::string spread(const std::vector<double>& values, int digits) {
@@ -59,18 +66,18 @@ std::string spread(const std::vector<double>& values, int digits) {
 
 std::vector<ContactRow> scanner_rows(const Dims& dims, std::uint64_t seed) {
   std::vector<ContactRow> rows;
-  const auto add = [&](const char* name, const std::string& scanner) {
+  const auto add = [&](const char* name, const std::string& scanner, double wedge_vox) {
     phantom::PhantomOptions o;
     o.dims = dims;
     o.seed = seed;
-    o.wedge_depth_vox = 7.0;
+    o.wedge_depth_vox = wedge_vox;
     o.scanner = phantom::parse_scanner(scanner).value();
     rows.push_back({name, o});
   };
-  for (const NamedScanner& row : kOfHalfATurn) add(row.name, fmt::format("{},{}", row.scanner, kHalf));
+  for (const NamedScanner& row : kOfHalfATurn) add(row.name, fmt::format("{},{}", row.scanner, kHalf), row.wedge_vox);
   for (ContactRow& row : rows)
     if (row.name == "few views") row.options.scanner->turn.views_per_voxel = 0.7;
-  for (const NamedScanner& row : kOfAFullTurn) add(row.name, row.scanner);
+  for (const NamedScanner& row : kOfAFullTurn) add(row.name, row.scanner, row.wedge_vox);
   return rows;
 }
 

@@ -1,4 +1,4 @@
-#include "core/rays/stray_field.h"
+#include "core/rays/scatter_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +78,7 @@ CoarseRays look_coarsely(const Volume<float>& volume, TurnAxis axis, const GreyL
   return out;
 }
 
-StrayField::StrayField(const CoarseRays& rays, double absorbed, double spread)
+ScatterField::ScatterField(const CoarseRays& rays, double absorbed, double spread)
     : directions_(rays.directions),
       planes_(rays.planes),
       bins_(rays.bins),
@@ -107,16 +107,16 @@ StrayField::StrayField(const CoarseRays& rays, double absorbed, double spread)
   });
 }
 
-StrayField StrayField::in_steps_of(double voxels) const {
-  StrayField other = *this;
+ScatterField ScatterField::in_steps_of(double voxels) const {
+  ScatterField other = *this;
   other.cell_ /= voxels;
   other.spread_ /= voxels;
   other.absorbed_ *= voxels;
   return other;
 }
 
-void StrayField::row(std::int64_t direction, std::int64_t all, std::span<const std::int64_t> planes, std::int64_t bins,
-                     float* out) const {
+void ScatterField::row(std::int64_t direction, std::int64_t all, std::span<const std::int64_t> planes,
+                       std::int64_t bins, float* out) const {
   const double place = static_cast<double>(direction * directions_) / static_cast<double>(all);
   const auto before = std::min(directions_ - 1, static_cast<std::int64_t>(place));
   const auto part = static_cast<float>(place - static_cast<double>(before));

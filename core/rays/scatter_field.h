@@ -19,15 +19,15 @@ CoarseRays look_coarsely(const Volume<float>& volume, TurnAxis axis, const GreyL
 
 /// Scatter comes from where light is absorbed, I p for a ray of recorded length p and light I = e^-p; on the detector
 /// it is spread by a Gauss ([Ohnesorge 1999]). In no unit: how much there is is fitted.
-class StrayField {
+class ScatterField {
  public:
   /// `absorbed`: p of a voxel; `spread`: standard deviation in voxels.
-  StrayField(const CoarseRays& rays, double absorbed, double spread);
+  ScatterField(const CoarseRays& rays, double absorbed, double spread);
 
   double absorbed() const noexcept { return absorbed_; }
   double spread() const noexcept { return spread_; }
   /// The same field in steps of so many voxels.
-  StrayField in_steps_of(double voxels) const;
+  ScatterField in_steps_of(double voxels) const;
 
   /// The field along row `direction` of `all` for planes of a grid, as lanes: `bins` groups about the middle.
   void row(std::int64_t direction, std::int64_t all, std::span<const std::int64_t> planes, std::int64_t bins,
