@@ -25,8 +25,15 @@ std::vector<std::int64_t> pairs_of_planes(std::int64_t all) {
   return planes;
 }
 
-Result<AxisShift> look_for_shift(GridStore& grid, const PlaneStrides& at, const StraightenOptions& options,
-                                 const ParallelRays& rays, const RowCurve& curve) {
+/// As many as rays lie side by side.
+std::int64_t directions_for(const PlaneStrides& planes) noexcept { return std::max(planes.width, planes.height); }
+
+/// More than rays lie side by side: what few directions leave in the air would draw the shift towards 0.
+std::int64_t directions_for_shift(const PlaneStrides& planes) noexcept { return directions_for(planes) * 3 / 2; }
+
+Result<AxisShift> look_for_shift(GridStore& grid, const PlaneStrides& at, const StraightenOptions& options) {
+  const ParallelRays rays(at.width, at.height, directions_for_shift(at));
+  const RowCurve curve(options.curve, options.stray.get(), rays.directions(), rays.bins());
   const std::vector<std::int64_t> planes = pairs_of_planes(at.planes);
   if (planes.empty()) return AxisShift{};
   LaneImage image = rays.image();
@@ -50,9 +57,6 @@ Result<AxisShift> look_for_shift(GridStore& grid, const PlaneStrides& at, const 
   });
 }
 
-/// As many as rays lie side by side.
-std::int64_t directions_for(const PlaneStrides& planes) noexcept { return std::max(planes.width, planes.height); }
-
 }  // namespace
 
 double crossings_of(const Dims& grid, TurnAxis axis) noexcept {
@@ -64,9 +68,7 @@ double crossings_of(const Dims& grid, TurnAxis axis) noexcept {
 Result<AxisShift> find_shift_in(GridStore& grid, const StraightenOptions& options) {
   if (!grid.in_memory() && options.axis != TurnAxis::kZ) return AxisShift{};
   const PlaneStrides at = planes_across(grid.dims(), options.axis);
-  const ParallelRays rays(at.width, at.height, directions_for(at));
-  const RowCurve curve(options.curve, options.stray.get(), rays.directions(), rays.bins());
-  return look_for_shift(grid, at, options, rays, curve);
+  return look_for_shift(grid, at, options);
 }
 
 Result<Straightened> straighten(GridStore& grid, const StraightenOptions& options, Progress& progress) {
@@ -80,7 +82,7 @@ Result<Straightened> straighten(GridStore& grid, const StraightenOptions& option
   const ParallelRays rays(at.width, at.height, directions_for(at));
   const RowCurve curve(options.curve, options.stray.get(), rays.directions(), rays.bins());
   Straightened done;
-  DUBSAR_ASSIGN(done.axis_shift, look_for_shift(grid, at, options, rays, curve));
+  DUBSAR_ASSIGN(done.axis_shift, look_for_shift(grid, at, options));
   const bool moves = done.axis_shift.pixels != 0.0;
   if (!moves && !options.curve.bends()) return done;
   LaneImage image = rays.image();

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <random>
 
 namespace dubsar {
@@ -17,6 +19,24 @@ TEST(RayCurve, SlopeIsTheDerivativeAndGoesOnStraight) {
   EXPECT_DOUBLE_EQ(curve.value(120.0), 120.0 * (1.02 + 0.67 + 0.1 + 0.36));
   EXPECT_DOUBLE_EQ(curve.slope(200.0), curve.slope(120.0));
   EXPECT_DOUBLE_EQ(curve.contrast(), 1.02 / (1.02 + 2 * 0.67 + 4 * 0.1 + 6 * 0.36));
+}
+
+// I = e^-L + s gives p = -log(I): L = p - log(1 - s e^p), whose Taylor coefficients are 1, 1/2, 1/3 ...
+TEST(RayCurve, ScatterAddsWhatItsFieldSays) {
+  RayCurve curve{{1.0}, 4.0};
+  curve.absorbed = 1.0;
+  curve.stray_unit = std::exp(4.0) * 0.01;
+  for (std::size_t k = 0; k < 3; ++k)
+    curve.stray[k] = std::pow(curve.stray_unit, std::array{1.0, 2.0, 4.0}[k]) / (std::array{1.0, 2.0, 4.0}[k] * 4.0);
+  curve.longest_stray = 0.01;
+  for (const double p : {0.5, 2.0, 2.5}) {
+    const double x = 0.01 * std::exp(p);
+    EXPECT_NEAR(curve.value(p, 0.01), p - std::log1p(-x), 1.2 * x * x * x / 3.0) << p;  // but for the third power
+    EXPECT_NEAR((curve.value(p + 1e-4, 0.01) - curve.value(p - 1e-4, 0.01)) / 2e-4, curve.slope(p, 0.01), 1e-5) << p;
+    EXPECT_DOUBLE_EQ(curve.value(p), p);
+  }
+  const RayCurve half = curve.in_steps_of(0.5);
+  EXPECT_NEAR(half.value(4.0, 0.01), 2.0 * curve.value(2.0, 0.01), 1e-12);
 }
 
 // Karush, Kuhn, Tucker: x is the minimum if and only if the gradient is 0 where x > 0 and not negative where x = 0.

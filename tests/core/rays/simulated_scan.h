@@ -24,8 +24,11 @@ struct Scanner {
   double first_angle = 0.0;                ///< of the first view
   double axis_off = 0.0;                   ///< pixels
   std::function<double(double)> recorded;  ///< of a straight line integral; nothing: the same
-  double noise = 0.0;                      ///< of a recorded line integral, standard deviation
-  double uneven = 0.0;                     ///< of pixels: standard deviation of what they add to a line integral
+  double stray = 0.0;       ///< scatter over the open beam where it is most, of a field over the detector
+  double absorbed = 0.045;  ///< by a voxel of clay, and
+  double spread = 20.0;     ///< voxels, where there is such a field
+  double noise = 0.0;       ///< of a recorded line integral, standard deviation
+  double uneven = 0.0;      ///< of pixels: standard deviation of what they add to a line integral
   unsigned seed = 1;
 };
 
@@ -51,9 +54,41 @@ inline double line_integral(const std::vector<Ellipsoid>& object, double cosine,
   return sum;
 }
 
+/// Scatter of one view, [z][u]: light that is absorbed, a L e^(-a L), spread by a Gauss over the detector, and 1 where
+/// it is most.
+inline std::vector<double> stray_of_view(const std::vector<Ellipsoid>& object, Dims dims, const Scanner& scanner,
+                                         double cosine, double sine, int half) {
+  const int bins = 2 * half + 1, planes = static_cast<int>(dims.z);
+  std::vector<double> source(static_cast<std::size_t>(bins * planes)), across(source), out(source);
+  for (int z = 0; z < planes; ++z)
+    for (int u = 0; u < bins; ++u) {
+      const double p = scanner.absorbed *
+                       line_integral(object, cosine, sine, u - half + scanner.axis_off, z - 0.5 * double(planes - 1));
+      source[static_cast<std::size_t>(z * bins + u)] = p * std::exp(-p);
+    }
+  const auto weight = [&](int k) { return std::exp(-0.5 * k * k / (scanner.spread * scanner.spread)); };
+  for (int z = 0; z < planes; ++z)
+    for (int u = 0; u < bins; ++u)
+      for (int v = 0; v < bins; ++v)
+        across[static_cast<std::size_t>(z * bins + u)] +=
+            weight(u - v) * source[static_cast<std::size_t>(z * bins + v)];
+  for (int z = 0; z < planes; ++z)
+    for (int u = 0; u < bins; ++u)
+      for (int w = 0; w < planes; ++w)
+        out[static_cast<std::size_t>(z * bins + u)] += weight(z - w) * across[static_cast<std::size_t>(w * bins + u)];
+  return out;
+}
+
 inline Volume<float> scan(const std::vector<Ellipsoid>& object, Dims dims, const Scanner& scanner) {
   const int half = static_cast<int>(std::ceil(0.5 * std::hypot(double(dims.x), double(dims.y)))) + 2,
             bins = 2 * half + 1;
+  std::vector<std::vector<double>> strays;
+  double most_stray = 0.0;
+  for (int view = 0; scanner.stray > 0.0 && view < scanner.views; ++view) {
+    const double angle = scanner.first_angle + scanner.turn * view / scanner.views;
+    strays.push_back(stray_of_view(object, dims, scanner, std::cos(angle), std::sin(angle), half));
+    most_stray = std::max(most_stray, *std::max_element(strays.back().begin(), strays.back().end()));
+  }
   std::mt19937 random(scanner.seed);
   std::normal_distribution<double> normal;
   Volume<float> out(dims);
@@ -71,6 +106,10 @@ inline Volume<float> scan(const std::vector<Ellipsoid>& object, Dims dims, const
           sum += line_integral(object, c, s, u - half + part + scanner.axis_off, double(z) - 0.5 * double(dims.z - 1)) /
                  3.0;
         if (scanner.recorded) sum = scanner.recorded(sum);
+        if (scanner.stray > 0.0) {
+          const double stray = strays[static_cast<std::size_t>(view)][static_cast<std::size_t>(int(z) * bins + u)];
+          sum = -std::log(std::exp(-scanner.absorbed * sum) + scanner.stray * stray / most_stray) / scanner.absorbed;
+        }
         p[static_cast<std::size_t>(u)] = sum + stripes[static_cast<std::size_t>(u)] + scanner.noise * normal(random);
       }
       for (int u = 0; u < bins; ++u) {

@@ -81,6 +81,38 @@ TEST(Straighten, EdgesOnLongRaysGetTheirContrastBack) {
   EXPECT_NEAR(edge(done), edge(scene().straight), 0.05 * edge(scene().straight));
 }
 
+// A curve of lengths alone cannot: behind the middle of the object there is more scatter than at its rim.
+TEST(Straighten, GivesBackWhatScatterTookThatVariesOverTheDetector) {
+  test::Scanner scanner;
+  scanner.absorbed = kAbsorbed;
+  scanner.stray = 0.15;
+  const Volume<float> bent = test::scan(test::tablet_in_envelope(1.0), kDims, scanner);
+  StraightenOptions options = options_for(bent);
+  ASSERT_TRUE(options.stray);
+  EXPECT_NEAR(options.stray->spread(), scanner.spread, 0.4 * scanner.spread);
+  GridStore grid(copy_of(bent));
+  SilentProgress progress;
+  ASSERT_TRUE(straighten(grid, options, progress));
+  const Volume<float> done = grid.take_volume();
+  const double before = difference(bent, scene().straight), after = difference(done, scene().straight);
+  EXPECT_GT(before, 0.05);
+  EXPECT_LT(after, 0.35 * before) << before;
+}
+
+TEST(Straighten, AnAxisThatWasOffIsFoundAboutTheRightAxisOnly) {
+  test::Scanner scanner;
+  scanner.axis_off = 0.5;
+  GridStore off(test::scan(test::tablet_in_envelope(1.0), kDims, scanner));
+  const auto shift_about = [](GridStore& grid, TurnAxis axis) {
+    return find_shift_in(grid, {axis, {0.0, 1.0}, {{1.0}, 100.0}})->pixels;
+  };
+  EXPECT_NEAR(std::abs(shift_about(off, TurnAxis::kZ)), 0.5, 0.1);
+  EXPECT_EQ(shift_about(off, TurnAxis::kX), 0.0);
+  EXPECT_EQ(shift_about(off, TurnAxis::kY), 0.0);
+  GridStore right(copy_of(scene().straight));
+  EXPECT_EQ(shift_about(right, TurnAxis::kZ), 0.0);
+}
+
 TEST(Straighten, AStraightCurveChangesNoBit) {
   GridStore grid(copy_of(scene().straight));
   SilentProgress progress;
