@@ -88,7 +88,7 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   if (expected)
     result.json["artefacts"] = {
         {"bent_rays", expected->bent_rays ? bent_rays_json(*expected->bent_rays) : json(nullptr)},
-        {"seen_bend", expected->seen_bend}};
+        {"seen_bend", {{"bend", expected->seen_bend.bend}, {"share", expected->seen_bend.share}}}};
   std::string& text = result.text;
   text = fmt::format("volume ({}{}{})\n", info.format, info.dataset.empty() ? "" : ", ", info.dataset);
   if (!info.found_by.empty()) text += fmt::format("  found by     {}\n", info.found_by);

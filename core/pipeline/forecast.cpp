@@ -126,7 +126,7 @@ Result<Forecast> forecast(SlabSource& scan, const RunShape& wanted, Detail detai
   if (look_for_rays) {
     DUBSAR_ASSIGN(RaysLook look, look_for_bent_rays({scan, 1.0}, scan, {clock, progress}));
     result.bent_rays = std::move(look.bent);
-    result.seen_bend = look.seen_bend;
+    result.seen_bend = look.seen;
     if (result.bent_rays) plan_straightening(run, *result.bent_rays, room);
   }
   result.cost = cost_of(run, thread_count());

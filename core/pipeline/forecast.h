@@ -13,7 +13,7 @@ namespace dubsar {
 struct Forecast {
   DetailChoice detail;
   std::optional<BentRays> bent_rays;  ///< that will be straightened; where artefacts were looked for
-  double seen_bend = 0.0;             ///< of rays, where none will be straightened (RaysReport)
+  SeenBend seen_bend;                 ///< of rays, where none will be straightened
   RunShape run;                       ///< with the vertices, the readings and the speed that were found
   RunCost cost;                       ///< with the threads that are set (parallel.h), beside the program itself
   double memory_bytes() const noexcept { return cost.bytes + 30e6; }  ///< most at any time, the program included

@@ -130,7 +130,9 @@ Result<RaysLook> look_for_bent_rays(Overview overview, SlabSource& scan, StageRu
   run.clock.finish(std::max<std::int64_t>(1, quick.crossings));
   RaysLook look;
   look.levels = quick.levels;
-  for (const CurveTrial& trial : quick.trials) look.seen_bend = std::max(look.seen_bend, trial.bend());
+  for (const CurveTrial& trial : quick.trials)
+    if (look.seen.bend == 0.0 || 1.0 - trial.left() > look.seen.share)
+      look.seen = {trial.bend(), std::max(0.0, 1.0 - trial.left())};
   if (!search.found) return look;
   const CurveTrial& found = *search.found;
   BentRays bent;
@@ -159,7 +161,7 @@ Result<RaysReport> straighten_rays(ImportedGrid& imported, RunShape& shape, std:
   RaysReport report;
   DUBSAR_ASSIGN(const RaysLook look, look_for_bent_rays({imported.grid.grid, 2.0}, *imported.scan, run));
   report.bent = look.bent;
-  report.seen_bend = look.seen_bend;
+  report.seen = look.seen;
   if (!report.bent) {
     DUBSAR_ASSIGN(report.bent, look_for_axis_alone(imported.grid.grid, look.levels, run));
   }

@@ -26,7 +26,7 @@ struct Overview {
 struct RaysLook {
   std::optional<BentRays> bent;
   GreyLevels levels;
-  double seen_bend = 0.0;  ///< largest of those that were tried
+  SeenBend seen;  ///< of all axes
 };
 
 /// Looks for bent rays about each axis at some 100 cells a side, and where there are any, measures them at some 300. Of

@@ -97,7 +97,7 @@ json artefacts_json(const PipelineReport& report) {
   json result{{"bent_rays", rays.bent ? bent_rays_json(*rays.bent) : json(nullptr)},
               {"straightened", rays.straightened.has_value()},
               {"axis_shift_vox", rays.straightened ? json(rays.straightened->axis_shift.pixels) : json(nullptr)},
-              {"seen_bend", rays.seen_bend},
+              {"seen_bend", {{"bend", rays.seen.bend}, {"share", rays.seen.share}}},
               {"text", rays_text(rays, report.scan.frame)}};
   if (!rays.why_not.empty()) result["why_not"] = rays.why_not;
   if (rays.bent) result["advice"] = kAdviceForBentRays;

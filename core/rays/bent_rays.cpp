@@ -7,12 +7,11 @@
 namespace dubsar {
 
 std::string rays_text(const RaysReport& report, const GridFrame& frame) {
-  const std::string unbent = report.seen_bend > 0.0
-                                 ? fmt::format(
-                                       "rays bend by {:.2f}, which is not corrected: no scatter or hardening "
-                                       "that would count",
-                                       report.seen_bend)
-                                 : "rays: straight, no scatter or hardening that would count";
+  const std::string unbent =
+      report.seen.bend > 0.0
+          ? fmt::format("rays bend by {:.2f}, which explains {:.0f} % of what is uneven in clay and air: not corrected",
+                        report.seen.bend, 100.0 * report.seen.share)
+          : "rays: straight, no scatter or hardening that would count";
   if (!report.bent) return unbent;
   const BentRays& bent = *report.bent;
   const glm::dvec3 mm = frame.input_voxel.mm * frame.scale;

@@ -23,12 +23,17 @@ struct BentRays {
   double crossing_s = 0.0;  ///< seconds of one core for a crossing of voxel and ray (straighten.h), about
 };
 
+/// The bend that would even clay and air most.
+struct SeenBend {
+  double bend = 0.0;   ///< CurveTrial::bend(); 0: none was looked for
+  double share = 0.0;  ///< of the variance of clay and air that it would take away
+};
+
 struct RaysReport {
   std::optional<BentRays> bent;              ///< nothing: none that is significant
   std::optional<Straightened> straightened;  ///< nothing: rays are as they were; shifts in voxels of the scan
   std::string why_not;                       ///< one sentence, where rays are bent and stay so
-  double seen_bend =
-      0.0;  ///< the largest bend (CurveTrial) that was seen and not taken for one; 0: none was looked for
+  SeenBend seen;                             ///< where none is significant
 };
 
 /// "rays through 45 mm of clay arrive with 26 % of their contrast (scatter, hardening); straightened"
