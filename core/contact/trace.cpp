@@ -18,6 +18,7 @@
 #include "core/contact/interface_rest.h"
 #include "core/contact/interface_shape.h"
 #include "core/contact/kept_shape.h"
+#include "core/contact/labelled_contact.h"
 #include "core/contact/pockets.h"
 #include "core/contact/recentre.h"
 #include "core/extract/triangulate.h"
@@ -236,6 +237,32 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
   return {};
 }
 
+/// One mesh of labelled points instead.
+Result<void> trace_labels(SurfaceModel& model, Traced& traced, const ContactOptions& options, ContactReport& report,
+                          Progress& progress) {
+  DUBSAR_ASSIGN(
+      const LabelledContactReport labelled,
+      lay_labelled_contact(
+          model,
+          {.band = traced.band,
+           .density = traced.density,
+           .dips = traced.dips,
+           .index = traced.index,
+           .graph = traced.graph,
+           .faces = traced.faces,
+           .pores = traced.pores,
+           .side = traced.side,
+           .division = traced.clays ? nullptr : &*traced.division,
+           .shape = {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation}},
+          progress));
+  report.traced = true;
+  report.pockets = labelled.pockets;
+  report.film_vertices = labelled.film_vertices;
+  report.inferred_vertices = labelled.inferred_vertices;
+  report.patches.crossings = labelled.crossing_pairs;
+  return {};
+}
+
 /// What is `known` of the density, where that is enough.
 Result<BandDensity> density_of(const ContactBand& band, std::optional<BandDensity> known, SlabSource& density,
                                Progress& progress) {
@@ -291,7 +318,11 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(traced.side, traced.division->sides(progress));
   traced.cut_side = traced.side;
   if (progress.cancelled()) return cancelled_error();
-  DUBSAR_TRY(trace_until_closed(model, std::move(traced), options, report, progress));
+  if (options.mesh == ContactMesh::kLabels) {
+    DUBSAR_TRY(trace_labels(model, traced, options, report, progress));
+  } else {
+    DUBSAR_TRY(trace_until_closed(model, std::move(traced), options, report, progress));
+  }
   progress.end();
   return report;
 }

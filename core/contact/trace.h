@@ -7,13 +7,24 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/base/text/enum_names.h"
 #include "core/parts/surface_model.h"
 #include "core/parts/untangle.h"
 #include "core/volume/slab_source.h"
 
 namespace dubsar {
 
+/// How the parts are closed where they touch.
+enum class ContactMesh {
+  kPatches,  ///< a patch between the surfaces, which is got apart from them
+  kLabels,   ///< one mesh of labelled grid points (labelled_contact.h): a trial, which no EXA file holds yet
+};
+inline constexpr EnumName<ContactMesh> kContactMeshes[] = {{ContactMesh::kPatches, "patches"},
+                                                           {ContactMesh::kLabels, "labels"}};
+static_assert(names_all(kContactMeshes, static_cast<std::size_t>(ContactMesh::kLabels) + 1));
+
 struct ContactOptions {
+  ContactMesh mesh = ContactMesh::kPatches;
   /// Whether what the smooth patch has missed by more than the reach is looked for at half the density's resolution:
   /// at the scan's own.
   bool halve_first = true;

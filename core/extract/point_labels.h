@@ -24,6 +24,10 @@ class PointLabels {
   }
   /// Of a point of the grid; nothing is seen of it where there is air. Not from several threads.
   void set_envelope(std::int64_t x, std::int64_t y, std::int64_t z, bool envelope);
+  /// Points [begin, end) of a row are the envelope's.
+  void set_envelope_run(std::int64_t begin, std::int64_t end, std::int64_t y, std::int64_t z);
+  /// Gives tiles back that have clay of one of them only.
+  void compact();
 
   /// Clay of one of them in a word of a row (BitVolume); rows and words beyond the grid are 0.
   std::uint64_t envelope_word(std::int64_t word, std::int64_t y, std::int64_t z) const noexcept {
@@ -53,6 +57,8 @@ class PointLabels {
     const std::uint32_t place = place_[tile_of(word, y, z)];
     return place == kAllTablet ? 0 : place == kAllEnvelope ? ~std::uint64_t{0} : bits_[place + row_in_tile(y, z)];
   }
+
+  std::uint64_t& own_word(std::int64_t word, std::int64_t y, std::int64_t z);
 
   const BitVolume* inside_;
   std::int64_t words_ = 0, tiles_y_ = 0;

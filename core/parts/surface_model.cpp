@@ -249,7 +249,8 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   DUBSAR_ASSIGN(const Selection selection, select(model, options));
   TriangleSoup soup;
   const std::size_t more = options.fill_holes ? patch_triangles(model) : 0;
-  add_quads(model, selection, triangulate(model.mesh, model.attributes.normals, more), soup);
+  add_quads(model, selection, model.drawing ? *model.drawing : triangulate(model.mesh, model.attributes.normals, more),
+            soup);
   soup.first_patch_triangle = soup.triangles.size();
   soup.first_patch_vertex = model.mesh.positions.size() + soup.added.size();
   if (options.fill_holes) add_patches(model, selection, soup);

@@ -12,6 +12,7 @@
 #include "core/base/result.h"
 #include "core/extract/quad_mesh.h"
 #include "core/extract/surface_samples.h"
+#include "core/extract/triangulate.h"
 #include "core/mesh/tri_mesh.h"
 
 namespace dubsar {
@@ -45,6 +46,9 @@ struct SurfaceModel {
   std::vector<PartitionId> quad_partition;  ///< per x-quad; empty: not segmented, all 0
   PartitionTable partitions;
   std::vector<FillPatch> patches;
+  /// The triangles of the x-quads, where they are not those of triangulate(): of a labelled mesh (safe_drawing.h), whose
+  /// connectivity does not follow from the samples either. No EXA file holds it.
+  std::optional<Triangulation> drawing;
   std::string provenance;  ///< JSON text
   std::vector<ForeignBlock> foreign;
   /// Of positions, normals and curvatures (settled_sum(), core/exa/offsets/settle.h) where the last two follow from the

@@ -11,10 +11,11 @@ constexpr double kUnevenClay = 2.0;
 
 }  // namespace
 
-Result<TracedModel> trace(SurfaceModel model, const ImportedGrid& imported, StageRun run) {
+Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const ImportedGrid& imported, StageRun run) {
   TracedModel traced{std::move(model), {}};
   run.clock.start("contact", "point");
   ContactOptions options;
+  options.mesh = mesh;
   if (imported.facts.blur) options.blur_variance = static_cast<float>(imported.facts.blur->variance);
   options.halve_first = !imported.detail.resample();
   if (const auto& rays = imported.facts.rays; rays && rays->straightened)
@@ -24,7 +25,8 @@ Result<TracedModel> trace(SurfaceModel model, const ImportedGrid& imported, Stag
                         : imported.detail.resample() ? static_cast<SlabSource&>(halved)
                                                      : *imported.scan;
   DUBSAR_ASSIGN(traced.contact, trace_contact(traced.model, density, options, run.progress));
-  if (traced.contact.traced) settle_patches(traced.model.patches, traced.model.mesh.vertex_count());
+  if (traced.contact.traced && !traced.model.drawing)
+    settle_patches(traced.model.patches, traced.model.mesh.vertex_count());
   run.clock.finish(traced.contact.points);
   return traced;
 }

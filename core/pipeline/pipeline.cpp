@@ -135,7 +135,7 @@ struct Run {
       plan.run.patches = static_cast<double>(patch_triangles(model));
       const Result<void> fits = check_fits(plan.run, plan.room, RunStage::kContact);
       if (fits) {
-        DUBSAR_ASSIGN(TracedModel traced, trace(std::move(model), imported, run));
+        DUBSAR_ASSIGN(TracedModel traced, trace(std::move(model), options.contact_mesh, imported, run));
         model = std::move(traced.model);
         contact = std::move(traced.contact);
       } else {

@@ -6,6 +6,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/contact/trace.h"
 #include "core/pipeline/rays_stage.h"
 #include "core/pipeline/report.h"
 #include "core/pipeline/surface_stages.h"
@@ -28,6 +29,7 @@ struct PipelineOptions {
   SegmentOptions segment;
   bool fill_holes = true;
   bool trace_contact = true;                                       ///< with filled holes only
+  ContactMesh contact_mesh = ContactMesh::kPatches;
   std::optional<OcclusionOptions> occlusion = OcclusionOptions{};  ///< none: no ambient light
 };
 

@@ -10,6 +10,7 @@
 
 #include "core/base/system/parallel.h"
 #include "core/mesh/evidence.h"
+#include "core/mesh/exact_crossings.h"
 #include "core/mesh/intersections.h"
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/pipeline.h"
@@ -76,6 +77,9 @@ void count_crossings(const TriMesh& mesh, JudgedRow& judged) {
   };
   for (const auto& [a, b] : self_intersections(mesh.positions, mesh.triangles))
     ++(of_patch(a) || of_patch(b) ? judged.crossings : judged.self_crossings);
+  const ExactCheck exact = check_exactly(mesh.positions, mesh.triangles);
+  judged.touching += exact.crossing_pairs;
+  judged.flat += exact.zero_area_triangles;
 }
 
 }  // namespace
@@ -155,6 +159,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   PipelineOptions options;
   options.import.path = path;
   options.detail = how.detail;
+  options.contact_mesh = how.mesh;
   if (!how.light) options.occlusion.reset();
   const PipelineResult result = value_or_exit(run_pipeline(options, progress));
   JudgedRow judged;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/contact/trace.h"
 #include "core/filter/edge_spread.h"
 #include "core/phantom/options.h"
 #include "core/pipeline/detail.h"
@@ -39,6 +40,7 @@ struct JudgedRow {
   TabletError tablet;
   std::int64_t crossings = 0;       ///< pairs of triangles, one of a patch, that cross on tablet or envelope
   std::int64_t self_crossings = 0;  ///< pairs of the surface itself
+  std::int64_t touching = 0, flat = 0;  ///< pairs of triangles of tablet or envelope, and triangles: check_exactly()
   bool traced = false;
   std::optional<EdgeSpread> blur;
   double step = 1.0;   ///< voxels of the scan in one of the grid
@@ -49,6 +51,7 @@ struct JudgedRow {
 
 struct JudgeOptions {
   Detail detail = Detail::kAuto;
+  ContactMesh mesh = ContactMesh::kPatches;
   bool light = false;   ///< with ambient occlusion, so that the times are those of `dubsar process`
   bool judge = true;    ///< false: times and memory only
   bool places = false;  ///< prints where a wedge was invented

@@ -25,6 +25,7 @@ struct Arguments {
   std::uint64_t seed = 0;
   int seeds = 1;
   Detail detail = Detail::kAuto;
+  ContactMesh mesh = ContactMesh::kPatches;
   std::string only;     ///< names of rows, with commas
   std::string volumes;  ///< a folder of scans that are not of tablets
   bool large = false, costs = false, places = false, scanner = false;
@@ -32,7 +33,7 @@ struct Arguments {
 
 constexpr std::string_view kHelp =
     "wedges_bench [--quick | --size XxYxZ] [--seed N] [--seeds COUNT] [--only ROW,ROW] [--detail auto|scan|half]\n"
-    "             [--places] [--costs] [--large] [--scanner] | --volumes FOLDER\n"
+    "             [--contact patches|labels] [--places] [--costs] [--large] [--scanner] | --volumes FOLDER\n"
     "  --quick   256x160x240, minutes; else 512x320x480\n"
     "  --seed    phantoms of this seed, --seeds: so many of each kind; none: a fresh one, which is printed\n"
     "  --only    rows: text, pressed, pockets, film 1, film 0.5, film 0.35, film 0.2, filled, unwritten,\n"
@@ -84,6 +85,8 @@ Arguments parse(int argc, char** argv) {
           std::find_if(std::begin(kDetails), std::end(kDetails), [&](const auto& name) { return name.name == value; });
       if (detail == std::end(kDetails)) usage(kUsage);
       a.detail = detail->value;
+    } else if (word == "--contact") {
+      a.mesh = value == std::string_view("labels") ? ContactMesh::kLabels : ContactMesh::kPatches;
     } else if (word == "--size") {
       long x = 0, y = 0, z = 0;
       if (std::sscanf(value, "%ldx%ldx%ld", &x, &y, &z) != 3) usage(kUsage);
@@ -123,9 +126,9 @@ struct Kind {
 using Kinds = std::map<std::string, Kind>;
 
 void print_row_heads() {
-  fmt::print("{:<15}{:>7}{:>7}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}{:>6}{:>8}{:>8}{:>6}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}\n",
+  fmt::print("{:<15}{:>7}{:>7}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}{:>6}{:>8}{:>8}{:>6}{:>6}{:>6}{:>7}{:>6}{:>6}{:>7}{:>7}{:>7}\n",
              "phantom", "seed", "free", "rms", "pock.", "shown", "film w", "near", "% film", "% inf", "purity",
-             "recall", "false", "cross", "self", "blur", "cpu s", "contact", "MiB");
+             "recall", "false", "cross", "self", "touch", "flat", "blur", "cpu s", "contact", "MiB");
 }
 
 void print_row(const ContactRow& row, const JudgedRow& j) {
@@ -134,13 +137,13 @@ void print_row(const ContactRow& row, const JudgedRow& j) {
     return 100.0 * static_cast<double>(c.evidence[e]) / std::max<double>(1.0, static_cast<double>(c.contact_vertices));
   };
   fmt::print(
-      "{:<15}{:>7}{:>7.3f}{:>6.3f}{:>6.3f}{:>6.3f}{:>7.3f}{:>7.3f}{:>7.1f}{:>6.1f}{:>8.4f}{:>8.4f}{:>6}{:>6}{:>6}{:>6."
+      "{:<15}{:>7}{:>7.3f}{:>6.3f}{:>6.3f}{:>6.3f}{:>7.3f}{:>7.3f}{:>7.1f}{:>6.1f}{:>8.4f}{:>8.4f}{:>6}{:>6}{:>6}{:>7}{:>6}{:>6."
       "2f}"
       "{:>7.1f}{:>7.1f}{:>7.0f}  {}\n",
       row.name, row.options.seed, c.cases[0].kept_fraction(), j.tablet.rms, c.cases[1].kept_fraction(),
       c.cases[1].shown_fraction(), c.cases[2].kept_fraction(), c.near_fraction(), percent(2), percent(3),
       std::min(j.seen.owner[0].purity(), j.seen.owner[1].purity()),
-      std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.self_crossings,
+      std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.self_crossings, j.touching, j.flat,
       j.blur ? std::sqrt(j.blur->variance) : NAN, j.cpu_s, j.contact_cpu_s, j.peak_mib, j.remark);
   std::fflush(stdout);
 }
@@ -279,7 +282,7 @@ int run(int argc, char** argv) {
     for (const ContactRow& row : contact_rows(a.dims, a.seed + 1000 * static_cast<std::uint64_t>(i))) {
       if (!a.only.empty() && ("," + a.only + ",").find("," + row.name + ",") == std::string::npos) continue;
       const bool light = row.name == "text";
-      kinds[row.name].rows.push_back(judge_row(row, {.detail = a.detail, .light = light, .places = a.places}));
+      kinds[row.name].rows.push_back(judge_row(row, {.detail = a.detail, .mesh = a.mesh, .light = light, .places = a.places}));
       print_row(row, kinds[row.name].rows.back());
     }
   const int failed = print_wanted(kinds);

@@ -1,0 +1,146 @@
+#include "core/contact/contact_sheet.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <unordered_map>
+
+#include "core/base/numbers/disjoint_sets.h"
+
+namespace dubsar {
+namespace {
+
+constexpr float kSheetReach = 1.8f;  ///< more than the half diagonal of a cell
+constexpr float kSameDistance = 1e-4f;
+
+/// The place of a triangle nearest to a point, and what it lies on: bit i: corner i has a share in it (Ericson 2005).
+struct NearestPlace {
+  glm::vec3 place;
+  unsigned corners = 7;
+};
+
+NearestPlace nearest_place(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  const glm::vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp),
+              d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+  if (d1 <= 0.0f && d2 <= 0.0f) return {a, 1};
+  if (d3 >= 0.0f && d4 <= d3) return {b, 2};
+  if (d6 >= 0.0f && d5 <= d6) return {c, 4};
+  const float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+  if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) return {a + d1 / (d1 - d3) * ab, 3};
+  if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) return {a + d2 / (d2 - d6) * ac, 5};
+  if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f)
+    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), 6};
+  const float sum = va + vb + vc;
+  return {a + vb / sum * ab + vc / sum * ac, 7};
+}
+
+std::uint64_t sheet_side(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+/// Sides of one triangle, and their ends.
+struct SheetRim {
+  std::unordered_map<std::uint64_t, int> uses;
+  std::unordered_map<std::uint32_t, bool> at_rim;
+  explicit SheetRim(const std::vector<Triangle>& triangles) {
+    for (const Triangle& t : triangles)
+      for (std::size_t i = 0; i < 3; ++i) ++uses[sheet_side(t[i], t[(i + 1) % 3])];
+    for (const auto& [side, count] : uses)
+      if (count == 1) at_rim[static_cast<std::uint32_t>(side >> 32)] = at_rim[static_cast<std::uint32_t>(side)] = true;
+  }
+  bool has(const Triangle& t, unsigned corners) const {
+    if (corners == 7) return false;
+    std::array<std::uint32_t, 2> ids{};
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (corners >> i & 1u) ids[count++] = t[i];
+    return count == 1 ? at_rim.contains(ids[0]) : uses.at(sheet_side(ids[0], ids[1])) == 1;
+  }
+};
+
+}  // namespace
+
+std::vector<float> distances_from_sheet(const ContactBand& band, const InterfaceMesh& sheet,
+                                        const std::vector<glm::vec3>& dual_positions) {
+  const auto dual = static_cast<std::uint32_t>(dual_positions.size());
+  const auto place = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : sheet.added[v - dual]; };
+  constexpr float kFar = std::numeric_limits<float>::infinity(), kUnknown = std::numeric_limits<float>::quiet_NaN();
+  struct Nearest {
+    float distance = kFar, cosine = 0.0f;  ///< of the angle between the triangle's normal and the way to the point
+    bool rim = false;
+  };
+  std::vector<Nearest> nearest(band.nodes.size());
+  const SheetRim rim(sheet.triangles);
+  for (const Triangle& t : sheet.triangles) {
+    const glm::vec3 a = place(t[0]), b = place(t[1]), c = place(t[2]), n = glm::cross(b - a, c - a);
+    const float length = glm::length(n);
+    if (!(length > 0.0f)) continue;
+    const glm::ivec3 low(glm::ceil(glm::min(a, glm::min(b, c)) - kSheetReach)),
+        high(glm::floor(glm::max(a, glm::max(b, c)) + kSheetReach));
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+          const std::uint32_t node = band.at({x, y, z});
+          if (node == ContactBand::kNone) continue;
+          const glm::vec3 p(x, y, z);
+          const NearestPlace found = nearest_place(p, a, b, c);
+          const glm::vec3 off = p - found.place;
+          const float distance = glm::length(off);
+          if (distance > kSheetReach) continue;
+          Nearest& best = nearest[node];
+          if (distance > best.distance + kSameDistance) continue;
+          const float cosine = distance > 0.0f ? glm::dot(off, n) / (distance * length) : 1.0f;
+          // Of triangles that meet at the nearest place the one that is seen least from its edge tells the side.
+          if (distance > best.distance - kSameDistance && std::abs(cosine) <= std::abs(best.cosine)) continue;
+          best = {distance, cosine, rim.has(t, found.corners)};
+        }
+  }
+  std::vector<float> distances(nearest.size(), kUnknown);
+  for (std::size_t i = 0; i < nearest.size(); ++i)
+    if (nearest[i].distance < kFar)
+      distances[i] = nearest[i].rim ? kFar : std::copysign(nearest[i].distance, nearest[i].cosine);
+  return distances;
+}
+
+void follow_sheet(const ContactBand& band, const std::vector<float>& distances, int reach, std::size_t least,
+                  std::vector<ClaySide>& side) {
+  std::vector<std::uint32_t> front;
+  std::vector<bool> known(side.size(), false);
+  for (std::uint32_t n = 0; n < side.size(); ++n) {
+    if (std::isnan(distances[n])) continue;
+    known[n] = true;
+    if (std::isinf(distances[n])) continue;  // as it was
+    side[n] = distances[n] > 0.0f ? ClaySide::kEnvelope : ClaySide::kTablet;
+    front.push_back(n);
+  }
+  for (int step = 0; step < reach; ++step) {
+    std::vector<std::uint32_t> next;
+    for (const std::uint32_t n : front)
+      each_beside(band.point(n), [&](const glm::ivec3& q) {
+        const std::uint32_t m = band.at(q);
+        if (m == ContactBand::kNone || known[m]) return;
+        known[m] = true;
+        side[m] = side[n];
+        next.push_back(m);
+      });
+    front = std::move(next);
+  }
+
+  DisjointSets pieces(side.size());
+  for (std::uint32_t n = 0; n < side.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint32_t m = band.at(band.point(n) + unit_step(axis));
+      if (m != ContactBand::kNone && side[m] == side[n]) pieces.join(n, m);
+    }
+  std::vector<std::uint32_t> size(side.size(), 0);
+  for (std::uint32_t n = 0; n < side.size(); ++n) ++size[pieces.root(n)];
+  for (std::uint32_t n = 0; n < side.size(); ++n)
+    if (size[pieces.root(n)] < least)
+      side[n] = side[n] == ClaySide::kTablet ? ClaySide::kEnvelope : ClaySide::kTablet;
+}
+
+}  // namespace dubsar

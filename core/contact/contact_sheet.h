@@ -1,0 +1,22 @@
+#pragma once
+// The contact as a sheet that has moved to where the scan shows it: which clay is on which side of it, and where it
+// crosses the grid. A move beyond the end of a grid edge changes labels, not places (docs/manifold.md).
+
+#include <cstdint>
+#include <vector>
+
+#include "core/contact/interface_mesh.h"
+
+namespace dubsar {
+
+/// Of each node of the band: its distance from the sheet, positive on the envelope's side; NaN where it is far;
+/// infinity where the nearest place is the sheet's rim, beyond which there is no other side.
+std::vector<float> distances_from_sheet(const ContactBand& band, const InterfaceMesh& sheet,
+                                        const std::vector<glm::vec3>& dual_positions);
+
+/// Sides as the sheet has them: of nodes near it by their distance, of those within `reach` steps of these the same as
+/// beside them. What hangs together in fewer than `least` nodes takes the other side.
+void follow_sheet(const ContactBand& band, const std::vector<float>& distances, int reach, std::size_t least,
+                  std::vector<ClaySide>& side);
+
+}  // namespace dubsar

@@ -1,0 +1,228 @@
+#include "core/contact/labelled_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+#include <utility>
+
+#include "core/base/system/log.h"
+#include "core/contact/clay_labels.h"
+#include "core/contact/contact_sheet.h"
+#include "core/contact/firmness.h"
+#include "core/contact/labelled_model.h"
+#include "core/extract/labelled_mesh.h"
+#include "core/mesh/evidence.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::uint32_t kNotOfSheet = 0xffffffffu;
+constexpr int kSheetSteps = 4;  ///< farther than film_refine moves the contact
+constexpr std::size_t kLeastClay = 64;  ///< nodes; less is a speck
+
+/// Where along the edge between two nodes the density is least, 0..1: the vertex of a parabola.
+float dip_along(const ContactBand& band, const Dips& dips, std::uint32_t n, std::uint32_t m, int axis) {
+  if (dips.density.empty()) return 0.5f;
+  const bool first = dips.density[n] <= dips.density[m];
+  const std::uint32_t middle = first ? n : m;
+  const std::uint32_t below = band.at(band.point(middle) - unit_step(axis)),
+                      above = band.at(band.point(middle) + unit_step(axis));
+  if (below == ContactBand::kNone || above == ContactBand::kNone) return 0.5f;
+  const float a = dips.density[below], b = dips.density[middle], c = dips.density[above], bend = a - 2.0f * b + c;
+  if (!(bend > 0.0f)) return 0.5f;
+  return std::clamp((first ? 0.0f : 1.0f) + 0.5f * (a - c) / bend, 0.0f, 1.0f);
+}
+
+/// The crossings of the contact, of each of its edges: from the end at which the edge starts, 0..1.
+template <class Along>
+std::vector<float> crossings_along(const ContactBand& band, const ContactEdges& edges, const Along& along) {
+  std::vector<float> crossings(edges.all().size(), 0.5f);
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const GridEdge& e = edges.all()[i];
+    const glm::ivec3 p(e.x, e.y, e.z);
+    const std::uint32_t n = band.at(p), m = band.at(p + unit_step(e.axis));
+    if (n != ContactBand::kNone && m != ContactBand::kNone) crossings[i] = along(n, m, e.axis);
+  }
+  return crossings;
+}
+
+std::vector<std::uint16_t> quantised(const std::vector<float>& along, int bits) {
+  std::vector<std::uint16_t> offsets(along.size());
+  const float steps = static_cast<float>(1 << bits);
+  for (std::size_t i = 0; i < along.size(); ++i)
+    offsets[i] = static_cast<std::uint16_t>(std::clamp(along[i] * steps, 0.0f, steps - 1.0f));
+  return offsets;
+}
+
+/// The contact of a labelled mesh alone.
+struct Sheet {
+  InterfaceMesh mesh;
+  std::vector<glm::vec3> dual_positions;  ///< of vertices that belong to the surface of the air, too
+};
+
+Sheet sheet_of(const LabelledMesh& labelled, const SurfaceModel& model, const DividedClay& clay,
+               const ContactEdges& edges, const std::vector<float>& along) {
+  Sheet sheet;
+  const std::vector<glm::vec3> places = places_at_air(labelled, model);
+  const std::vector<bool> at_air = vertices_at_air(labelled);
+  std::vector<std::uint32_t> id(labelled.mesh.positions.size(), kNotOfSheet);
+  std::vector<std::uint32_t> inner;
+  const auto first = static_cast<std::uint32_t>(labelled.first_contact);
+  const auto each_corner = [&](const auto& visit) {
+    for (auto q = first; q < labelled.mesh.quads.size(); ++q) {
+      const Polygon polygon = labelled.mesh.polygon(q);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size); ++k) visit(polygon.vertex[k], q);
+    }
+  };
+  each_corner([&](std::uint32_t v, std::uint32_t) {
+    if (!at_air[v] || id[v] != kNotOfSheet) return;
+    id[v] = static_cast<std::uint32_t>(sheet.dual_positions.size());
+    sheet.dual_positions.push_back(places[v]);
+  });
+  const auto dual = static_cast<std::uint32_t>(sheet.dual_positions.size());
+  each_corner([&](std::uint32_t v, std::uint32_t) {
+    if (at_air[v] || id[v] != kNotOfSheet) return;
+    id[v] = dual + static_cast<std::uint32_t>(inner.size());
+    inner.push_back(v);
+    sheet.mesh.added.push_back(labelled.mesh.positions[v]);
+  });
+  sheet.mesh.strength.assign(inner.size(), 0.0f);
+  std::vector<float> count(inner.size(), 0.0f);
+  const auto strength_of = [&](std::uint32_t q) {
+    const GridEdge& e = labelled.edges[q];
+    const std::uint32_t n = clay.band.at({e.x, e.y, e.z}), m = clay.band.at(glm::ivec3(e.x, e.y, e.z) + unit_step(e.axis));
+    return n == ContactBand::kNone || m == ContactBand::kNone ? 0.0f
+                                                              : std::max(clay.dips.strength[n], clay.dips.strength[m]);
+  };
+  each_corner([&](std::uint32_t v, std::uint32_t q) {
+    if (id[v] < dual) return;
+    sheet.mesh.strength[id[v] - dual] += strength_of(q);
+    count[id[v] - dual] += 1.0f;
+  });
+  for (std::size_t i = 0; i < count.size(); ++i) sheet.mesh.strength[i] /= std::max(count[i], 1.0f);
+  for (auto q = first; q < labelled.mesh.quads.size(); ++q) {
+    const Polygon polygon = labelled.mesh.polygon(q);
+    const auto n = static_cast<std::size_t>(polygon.size);
+    const auto corner = [&](std::size_t k) { return id[polygon.vertex[n - 1 - k % n]]; };  // out of the tablet
+    if (n == 4) {
+      sheet.mesh.triangles.push_back({corner(0), corner(1), corner(2)});
+      sheet.mesh.triangles.push_back({corner(0), corner(2), corner(3)});
+      continue;
+    }
+    const GridEdge& e = edges.all()[q - first];
+    glm::vec3 crossing(e.x, e.y, e.z);
+    crossing[e.axis] += along[q - first];
+    sheet.mesh.added.push_back(crossing);
+    sheet.mesh.strength.push_back(strength_of(q));
+    const auto middle = dual + static_cast<std::uint32_t>(sheet.mesh.added.size() - 1);
+    for (std::size_t k = 0; k < n; ++k) sheet.mesh.triangles.push_back({middle, corner(k), corner(k + 1)});
+  }
+  return sheet;
+}
+
+/// What is a film, and where: moves the added vertices of the sheet.
+Result<std::vector<std::uint8_t>> shape_sheet(Sheet& sheet, const DividedClay& clay, Progress& progress) {
+  const std::vector<glm::vec3> cut = sheet.mesh.added;
+  std::vector<std::uint8_t> evidence = shape_interface(sheet.mesh, sheet.dual_positions, clay.density, clay.shape);
+  std::vector<glm::vec3> films;
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    if (evidence[i] == evidence_byte(Evidence::kFilm)) films.push_back(cut[i]);
+  if (clay.division == nullptr || films.empty()) return evidence;
+  DUBSAR_ASSIGN(const std::vector<bool> unfirm, find_unfirm(clay.band, *clay.division, clay.side, films, progress));
+  doubt_unfirm(clay.band, unfirm, cut, evidence);
+  return evidence;
+}
+
+/// The evidence of the nearest vertex of the sheet, by cubes of two steps.
+class NearestEvidence {
+ public:
+  NearestEvidence(const InterfaceMesh& sheet, const std::vector<std::uint8_t>& evidence)
+      : sheet_(sheet), evidence_(evidence) {
+    for (std::uint32_t i = 0; i < sheet.added.size(); ++i) {
+      const glm::ivec3 c = cube(sheet.added[i]);
+      cubes_[{c.x, c.y, c.z}].push_back(i);
+    }
+  }
+  std::uint8_t at(const glm::vec3& p) const {
+    float least = INFINITY;
+    std::uint8_t found = evidence_byte(Evidence::kInferred);
+    const glm::ivec3 c = cube(p);
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const auto cubes = cubes_.find({c.x + x, c.y + y, c.z + z});
+          if (cubes == cubes_.end()) continue;
+          for (const std::uint32_t i : cubes->second) {
+            const float distance = glm::distance(p, sheet_.added[i]);
+            if (distance < least) least = distance, found = evidence_[i];
+          }
+        }
+    return found;
+  }
+
+ private:
+  static glm::ivec3 cube(const glm::vec3& p) { return glm::ivec3(glm::floor(p * 0.5f)); }
+  const InterfaceMesh& sheet_;
+  const std::vector<std::uint8_t>& evidence_;
+  std::map<std::array<int, 3>, std::vector<std::uint32_t>> cubes_;
+};
+
+}  // namespace
+
+Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress) {
+  LabelledContactReport report;
+  const int bits = model.samples.offset_bits;
+
+  // The contact as the cut has it, moved to where the scan shows it.
+  Sheet sheet;
+  {
+    const PointLabels labels = label_clay(model.samples.signs, clay.band, clay.side);
+    const ContactEdges edges(labels);
+    const std::vector<float> along =
+        crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
+          return dip_along(clay.band, clay.dips, n, m, axis);
+        });
+    DUBSAR_ASSIGN(const LabelledMesh cut, build_labelled_mesh(model.samples, clay.index, labels, edges,
+                                                              quantised(along, bits), progress));
+    sheet = sheet_of(cut, model, clay, edges, along);
+  }
+  DUBSAR_ASSIGN(const std::vector<std::uint8_t> evidence, shape_sheet(sheet, clay, progress));
+  if (progress.cancelled()) return cancelled_error();
+
+  // Labels and crossings of where it is now.
+  const std::vector<float> distances = distances_from_sheet(clay.band, sheet.mesh, sheet.dual_positions);
+  std::vector<ClaySide> side = clay.side;
+  follow_sheet(clay.band, distances, kSheetSteps, kLeastClay, side);
+  keep_whole(clay.band, clay.pores, side);
+  for (std::size_t n = 0; n < side.size(); ++n) report.relabelled += side[n] != clay.side[n];
+  report.pockets = relabel_faces(model, clay.graph, clay.faces, side);
+  const PointLabels labels = label_clay(model.samples.signs, clay.band, side);
+  const ContactEdges edges(labels);
+  const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
+    const float a = distances[n], b = distances[m];
+    if (!std::isfinite(a) || !std::isfinite(b) || !(a * b < 0.0f)) return dip_along(clay.band, clay.dips, n, m, axis);
+    return a / (a - b);
+  });
+  const std::vector<std::uint16_t> offsets = quantised(along, bits);
+  DUBSAR_ASSIGN(const LabelledMesh labelled,
+                build_labelled_mesh(model.samples, clay.index, labels, edges, offsets, progress));
+  report.cells = static_cast<std::int64_t>(labelled.cells.size());
+  if (progress.cancelled()) return cancelled_error();
+
+  const NearestEvidence known(sheet.mesh, evidence);
+  DUBSAR_ASSIGN(const DrawnModel drawn,
+                put_labelled_mesh(model, labelled, offsets, [&](const glm::vec3& p) { return known.at(p); }, progress));
+  report.rounds = drawn.rounds;
+  report.taken_back = drawn.taken_back;
+  report.crossing_pairs = drawn.crossing_pairs;
+  const std::vector<std::uint8_t>& of_patch = model.patches.front().evidence;
+  report.film_vertices = std::count(of_patch.begin(), of_patch.end(), evidence_byte(Evidence::kFilm));
+  report.inferred_vertices = static_cast<std::int64_t>(of_patch.size()) - report.film_vertices;
+  log_debug("contact: {} cells with clay of both, {} points given to the other clay, {} points taken back in {} rounds, "
+            "{} pairs of triangles touch", report.cells, report.relabelled, report.taken_back, report.rounds,
+            report.crossing_pairs);
+  return report;
+}
+
+}  // namespace dubsar
