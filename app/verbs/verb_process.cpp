@@ -98,9 +98,10 @@ void add_surface_options(Arguments command, ProcessRequest& options) {
   group.value("--concavity", p.segment.concavity, "k_min per grid step below which --segment concavity cuts");
   group.flag("--no-fill-holes", options.without.holes, "leave the holes that segmentation cuts");
   group.flag("--no-contact", options.without.contact, "leave smooth patches where tablet and envelope touch");
-  group.choice<ContactMesh>("--contact", p.contact_mesh, choices_of(kContactMeshes),
-                            "how parts are closed where they touch: patches (default), or labels, one mesh of all parts: "
-                            "a trial that writes PLY");
+  group.choice<ContactMesh>(
+      "--contact", p.contact_mesh, choices_of(kContactMeshes),
+      "how parts are closed where they touch: patches (default), or labels, one mesh of all parts: "
+      "a trial that writes PLY");
   group.flag("--no-ao", options.without.ao, "skip ambient occlusion");
   group.choice<OcclusionEngine>("--ao-by", options.ao_engine, choices_of(kOcclusionEngines),
                                 "what rays of ambient occlusion meet: march (default), distances on the grid, or "

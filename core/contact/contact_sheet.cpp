@@ -32,8 +32,7 @@ NearestPlace nearest_place(const glm::vec3& p, const glm::vec3& a, const glm::ve
   const float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
   if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) return {a + d1 / (d1 - d3) * ab, 3};
   if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) return {a + d2 / (d2 - d6) * ac, 5};
-  if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f)
-    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), 6};
+  if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f) return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), 6};
   const float sum = va + vb + vc;
   return {a + vb / sum * ab + vc / sum * ac, 7};
 }
@@ -108,21 +107,28 @@ std::vector<float> distances_from_sheet(const ContactBand& band, const Interface
 
 void follow_sheet(const ContactBand& band, const std::vector<float>& distances, int reach, std::size_t least,
                   std::vector<ClaySide>& side) {
+  const std::vector<ClaySide> before = side;
+  const auto at_end = [&](std::uint32_t n) {
+    bool found = false;
+    each_beside(band.point(n), [&](const glm::ivec3& q) { found = found || band.at(q) == ContactBand::kNone; });
+    return found;
+  };
   std::vector<std::uint32_t> front;
   std::vector<bool> known(side.size(), false);
   for (std::uint32_t n = 0; n < side.size(); ++n) {
     if (std::isnan(distances[n])) continue;
     known[n] = true;
-    if (std::isinf(distances[n])) continue;  // as it was
-    side[n] = distances[n] > 0.0f ? ClaySide::kEnvelope : ClaySide::kTablet;
-    front.push_back(n);
+    if (std::isinf(distances[n]) || at_end(n)) continue;  // as it was
+    const ClaySide now = distances[n] > 0.0f ? ClaySide::kEnvelope : ClaySide::kTablet;
+    if (now != side[n]) front.push_back(n);
+    side[n] = now;
   }
   for (int step = 0; step < reach; ++step) {
     std::vector<std::uint32_t> next;
     for (const std::uint32_t n : front)
       each_beside(band.point(n), [&](const glm::ivec3& q) {
         const std::uint32_t m = band.at(q);
-        if (m == ContactBand::kNone || known[m]) return;
+        if (m == ContactBand::kNone || known[m] || side[m] == side[n]) return;
         known[m] = true;
         side[m] = side[n];
         next.push_back(m);
@@ -130,6 +136,7 @@ void follow_sheet(const ContactBand& band, const std::vector<float>& distances, 
     front = std::move(next);
   }
 
+  // What has come loose of its clay stays as it was.
   DisjointSets pieces(side.size());
   for (std::uint32_t n = 0; n < side.size(); ++n)
     for (int axis = 0; axis < 3; ++axis) {
@@ -139,8 +146,7 @@ void follow_sheet(const ContactBand& band, const std::vector<float>& distances, 
   std::vector<std::uint32_t> size(side.size(), 0);
   for (std::uint32_t n = 0; n < side.size(); ++n) ++size[pieces.root(n)];
   for (std::uint32_t n = 0; n < side.size(); ++n)
-    if (size[pieces.root(n)] < least)
-      side[n] = side[n] == ClaySide::kTablet ? ClaySide::kEnvelope : ClaySide::kTablet;
+    if (size[pieces.root(n)] < least) side[n] = before[n];
 }
 
 }  // namespace dubsar

@@ -14,8 +14,10 @@ namespace dubsar {
 std::vector<float> distances_from_sheet(const ContactBand& band, const InterfaceMesh& sheet,
                                         const std::vector<glm::vec3>& dual_positions);
 
-/// Sides as the sheet has them: of nodes near it by their distance, of those within `reach` steps of these the same as
-/// beside them. What hangs together in fewer than `least` nodes takes the other side.
+/// Sides as the sheet has them: of nodes near it by their distance; what lies between it and where it was, within
+/// `reach` steps of these, goes with them. Clay beside air, or beside what is not in the band, keeps its side: of that
+/// the faces of the surface have told more than the sheet can, whose rim is their work. What comes loose of its clay in
+/// pieces of fewer than `least` nodes stays as it was.
 void follow_sheet(const ContactBand& band, const std::vector<float>& distances, int reach, std::size_t least,
                   std::vector<ClaySide>& side);
 

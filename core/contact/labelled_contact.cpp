@@ -18,7 +18,7 @@ namespace dubsar {
 namespace {
 
 constexpr std::uint32_t kNotOfSheet = 0xffffffffu;
-constexpr int kSheetSteps = 4;  ///< farther than film_refine moves the contact
+constexpr int kSheetSteps = 4;          ///< farther than film_refine moves the contact
 constexpr std::size_t kLeastClay = 64;  ///< nodes; less is a speck
 
 /// Where along the edge between two nodes the density is least, 0..1: the vertex of a parabola.
@@ -91,7 +91,8 @@ Sheet sheet_of(const LabelledMesh& labelled, const SurfaceModel& model, const Di
   std::vector<float> count(inner.size(), 0.0f);
   const auto strength_of = [&](std::uint32_t q) {
     const GridEdge& e = labelled.edges[q];
-    const std::uint32_t n = clay.band.at({e.x, e.y, e.z}), m = clay.band.at(glm::ivec3(e.x, e.y, e.z) + unit_step(e.axis));
+    const std::uint32_t n = clay.band.at({e.x, e.y, e.z}),
+                        m = clay.band.at(glm::ivec3(e.x, e.y, e.z) + unit_step(e.axis));
     return n == ContactBand::kNone || m == ContactBand::kNone ? 0.0f
                                                               : std::max(clay.dips.strength[n], clay.dips.strength[m]);
   };
@@ -179,12 +180,11 @@ Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const Di
   {
     const PointLabels labels = label_clay(model.samples.signs, clay.band, clay.side);
     const ContactEdges edges(labels);
-    const std::vector<float> along =
-        crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
-          return dip_along(clay.band, clay.dips, n, m, axis);
-        });
-    DUBSAR_ASSIGN(const LabelledMesh cut, build_labelled_mesh(model.samples, clay.index, labels, edges,
-                                                              quantised(along, bits), progress));
+    const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
+      return dip_along(clay.band, clay.dips, n, m, axis);
+    });
+    DUBSAR_ASSIGN(const LabelledMesh cut,
+                  build_labelled_mesh(model.samples, clay.index, labels, edges, quantised(along, bits), progress));
     sheet = sheet_of(cut, model, clay, edges, along);
   }
   DUBSAR_ASSIGN(const std::vector<std::uint8_t> evidence, shape_sheet(sheet, clay, progress));
@@ -212,16 +212,18 @@ Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const Di
 
   const NearestEvidence known(sheet.mesh, evidence);
   DUBSAR_ASSIGN(const DrawnModel drawn,
-                put_labelled_mesh(model, labelled, offsets, [&](const glm::vec3& p) { return known.at(p); }, progress));
+                put_labelled_mesh(
+                    model, labelled, offsets, [&](const glm::vec3& p) { return known.at(p); }, progress));
   report.rounds = drawn.rounds;
   report.taken_back = drawn.taken_back;
   report.crossing_pairs = drawn.crossing_pairs;
   const std::vector<std::uint8_t>& of_patch = model.patches.front().evidence;
   report.film_vertices = std::count(of_patch.begin(), of_patch.end(), evidence_byte(Evidence::kFilm));
   report.inferred_vertices = static_cast<std::int64_t>(of_patch.size()) - report.film_vertices;
-  log_debug("contact: {} cells with clay of both, {} points given to the other clay, {} points taken back in {} rounds, "
-            "{} pairs of triangles touch", report.cells, report.relabelled, report.taken_back, report.rounds,
-            report.crossing_pairs);
+  log_debug(
+      "contact: {} cells with clay of both, {} points given to the other clay, {} points taken back in {} rounds, "
+      "{} pairs of triangles touch",
+      report.cells, report.relabelled, report.taken_back, report.rounds, report.crossing_pairs);
   return report;
 }
 

@@ -32,16 +32,16 @@ struct DividedClay {
 
 struct LabelledContactReport {
   std::int64_t pockets = 0, film_vertices = 0, inferred_vertices = 0;
-  std::int64_t cells = 0;     ///< with clay of both
-  std::int64_t relabelled = 0;  ///< points of clay that the sheet's place gave to the other
-  int rounds = 0;             ///< of taking back
-  std::int64_t taken_back = 0;  ///< points
+  std::int64_t cells = 0;           ///< with clay of both
+  std::int64_t relabelled = 0;      ///< points of clay that the sheet's place gave to the other
+  int rounds = 0;                   ///< of taking back
+  std::int64_t taken_back = 0;      ///< points
   std::int64_t crossing_pairs = 0;  ///< that are left, of all triangles of all parts
 };
 
 /// Puts the labelled mesh in place of the model's: its x-quads between clay and air with their triangles
-/// (SurfaceModel::drawing), and the contact as one patch that shares vertices with them. Measures the partitions. Errors
-/// of make_tri_mesh(), kCancelled.
+/// (SurfaceModel::drawing), and the contact as one patch that shares vertices with them. Measures the partitions.
+/// Errors of make_tri_mesh(), kCancelled.
 Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress);
 
 }  // namespace dubsar

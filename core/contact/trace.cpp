@@ -240,21 +240,20 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
 /// One mesh of labelled points instead.
 Result<void> trace_labels(SurfaceModel& model, Traced& traced, const ContactOptions& options, ContactReport& report,
                           Progress& progress) {
-  DUBSAR_ASSIGN(
-      const LabelledContactReport labelled,
-      lay_labelled_contact(
-          model,
-          {.band = traced.band,
-           .density = traced.density,
-           .dips = traced.dips,
-           .index = traced.index,
-           .graph = traced.graph,
-           .faces = traced.faces,
-           .pores = traced.pores,
-           .side = traced.side,
-           .division = traced.clays ? nullptr : &*traced.division,
-           .shape = {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation}},
-          progress));
+  DUBSAR_ASSIGN(const LabelledContactReport labelled,
+                lay_labelled_contact(model,
+                                     {.band = traced.band,
+                                      .density = traced.density,
+                                      .dips = traced.dips,
+                                      .index = traced.index,
+                                      .graph = traced.graph,
+                                      .faces = traced.faces,
+                                      .pores = traced.pores,
+                                      .side = traced.side,
+                                      .division = traced.clays ? nullptr : &*traced.division,
+                                      .shape = {options.film_strength, kMostMove, options.blur_variance, traced.clays,
+                                                traced.dips.deviation}},
+                                     progress));
   report.traced = true;
   report.pockets = labelled.pockets;
   report.film_vertices = labelled.film_vertices;

@@ -46,8 +46,8 @@ struct SurfaceModel {
   std::vector<PartitionId> quad_partition;  ///< per x-quad; empty: not segmented, all 0
   PartitionTable partitions;
   std::vector<FillPatch> patches;
-  /// The triangles of the x-quads, where they are not those of triangulate(): of a labelled mesh (safe_drawing.h), whose
-  /// connectivity does not follow from the samples either. No EXA file holds it.
+  /// The triangles of the x-quads, where they are not those of triangulate(): of a labelled mesh (safe_drawing.h),
+  /// whose connectivity does not follow from the samples either. No EXA file holds it.
   std::optional<Triangulation> drawing;
   std::string provenance;  ///< JSON text
   std::vector<ForeignBlock> foreign;

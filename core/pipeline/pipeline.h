@@ -28,7 +28,7 @@ struct PipelineOptions {
   ExaProfile exa_profile = ExaProfile::kCompact;
   SegmentOptions segment;
   bool fill_holes = true;
-  bool trace_contact = true;                                       ///< with filled holes only
+  bool trace_contact = true;  ///< with filled holes only
   ContactMesh contact_mesh = ContactMesh::kPatches;
   std::optional<OcclusionOptions> occlusion = OcclusionOptions{};  ///< none: no ambient light
 };

@@ -38,8 +38,8 @@ struct JudgedRow {
   phantom::ContactScore contact;
   phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
   TabletError tablet;
-  std::int64_t crossings = 0;       ///< pairs of triangles, one of a patch, that cross on tablet or envelope
-  std::int64_t self_crossings = 0;  ///< pairs of the surface itself
+  std::int64_t crossings = 0;           ///< pairs of triangles, one of a patch, that cross on tablet or envelope
+  std::int64_t self_crossings = 0;      ///< pairs of the surface itself
   std::int64_t touching = 0, flat = 0;  ///< pairs of triangles of tablet or envelope, and triangles: check_exactly()
   bool traced = false;
   std::optional<EdgeSpread> blur;

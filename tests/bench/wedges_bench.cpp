@@ -126,9 +126,10 @@ struct Kind {
 using Kinds = std::map<std::string, Kind>;
 
 void print_row_heads() {
-  fmt::print("{:<15}{:>7}{:>7}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}{:>6}{:>8}{:>8}{:>6}{:>6}{:>6}{:>7}{:>6}{:>6}{:>7}{:>7}{:>7}\n",
-             "phantom", "seed", "free", "rms", "pock.", "shown", "film w", "near", "% film", "% inf", "purity",
-             "recall", "false", "cross", "self", "touch", "flat", "blur", "cpu s", "contact", "MiB");
+  fmt::print(
+      "{:<15}{:>7}{:>7}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}{:>6}{:>8}{:>8}{:>6}{:>6}{:>6}{:>7}{:>6}{:>6}{:>7}{:>7}{:>7}\n",
+      "phantom", "seed", "free", "rms", "pock.", "shown", "film w", "near", "% film", "% inf", "purity", "recall",
+      "false", "cross", "self", "touch", "flat", "blur", "cpu s", "contact", "MiB");
 }
 
 void print_row(const ContactRow& row, const JudgedRow& j) {
@@ -137,14 +138,15 @@ void print_row(const ContactRow& row, const JudgedRow& j) {
     return 100.0 * static_cast<double>(c.evidence[e]) / std::max<double>(1.0, static_cast<double>(c.contact_vertices));
   };
   fmt::print(
-      "{:<15}{:>7}{:>7.3f}{:>6.3f}{:>6.3f}{:>6.3f}{:>7.3f}{:>7.3f}{:>7.1f}{:>6.1f}{:>8.4f}{:>8.4f}{:>6}{:>6}{:>6}{:>7}{:>6}{:>6."
+      "{:<15}{:>7}{:>7.3f}{:>6.3f}{:>6.3f}{:>6.3f}{:>7.3f}{:>7.3f}{:>7.1f}{:>6.1f}{:>8.4f}{:>8.4f}{:>6}{:>6}{:>6}{:>7}{"
+      ":>6}{:>6."
       "2f}"
       "{:>7.1f}{:>7.1f}{:>7.0f}  {}\n",
       row.name, row.options.seed, c.cases[0].kept_fraction(), j.tablet.rms, c.cases[1].kept_fraction(),
       c.cases[1].shown_fraction(), c.cases[2].kept_fraction(), c.near_fraction(), percent(2), percent(3),
       std::min(j.seen.owner[0].purity(), j.seen.owner[1].purity()),
-      std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.self_crossings, j.touching, j.flat,
-      j.blur ? std::sqrt(j.blur->variance) : NAN, j.cpu_s, j.contact_cpu_s, j.peak_mib, j.remark);
+      std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.self_crossings,
+      j.touching, j.flat, j.blur ? std::sqrt(j.blur->variance) : NAN, j.cpu_s, j.contact_cpu_s, j.peak_mib, j.remark);
   std::fflush(stdout);
 }
 
@@ -282,7 +284,8 @@ int run(int argc, char** argv) {
     for (const ContactRow& row : contact_rows(a.dims, a.seed + 1000 * static_cast<std::uint64_t>(i))) {
       if (!a.only.empty() && ("," + a.only + ",").find("," + row.name + ",") == std::string::npos) continue;
       const bool light = row.name == "text";
-      kinds[row.name].rows.push_back(judge_row(row, {.detail = a.detail, .mesh = a.mesh, .light = light, .places = a.places}));
+      kinds[row.name].rows.push_back(
+          judge_row(row, {.detail = a.detail, .mesh = a.mesh, .light = light, .places = a.places}));
       print_row(row, kinds[row.name].rows.back());
     }
   const int failed = print_wanted(kinds);
