@@ -166,7 +166,7 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
   } else {
     DUBSAR_ASSIGN(const std::uint64_t bytes, parse_bytes(options.room.memory));
     set_memory_limit(bytes);
-    return_large_blocks();
+    share_heaps();
   }
   if (!options.room.scratch.empty()) p.import.budget.scratch_folder = options.room.scratch;
   if (options.without.resample) p.detail = Detail::kScan;

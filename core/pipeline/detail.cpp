@@ -15,11 +15,11 @@ std::string seconds_text(double s) {
 
 }  // namespace
 
-DetailChoice choose_detail(Detail wanted, RunShape run, std::uint64_t room, int threads) {
+DetailChoice choose_detail(Detail wanted, RunShape run, std::uint64_t room) {
   if (wanted != Detail::kAuto) return {wanted, "as set"};
   run.half = false;
-  const RunCost cost = cost_of(run, threads);
-  const std::string time = fmt::format("about {} by the plan with {} threads", seconds_text(cost.wall_s), threads);
+  const RunCost cost = cost_of(run);
+  const std::string time = fmt::format("about {} by the plan with {} threads", seconds_text(cost.wall_s), run.threads);
   const std::string memory = fmt::format("{} of the {} of memory that are left", memory_text(cost.bytes),
                                          memory_text(static_cast<double>(room)));
   if (cost.wall_s > kMostSeconds)

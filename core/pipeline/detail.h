@@ -25,9 +25,9 @@ struct DetailChoice {
   bool resample() const noexcept { return detail == Detail::kHalf; }
 };
 
-/// kAuto: the scan's resolution where the plan's cost is at most five minutes with so many threads and its memory fits
+/// kAuto: the scan's resolution where the plan's cost is at most five minutes with its threads and its memory fits
 /// `room` bytes. `run.half` does not matter; `run.vertices` are those at the scan's resolution. The same scan, threads
 /// and room give the same choice: nothing is measured for it.
-DetailChoice choose_detail(Detail wanted, RunShape run, std::uint64_t room, int threads);
+DetailChoice choose_detail(Detail wanted, RunShape run, std::uint64_t room);
 
 }  // namespace dubsar

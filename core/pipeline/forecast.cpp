@@ -73,9 +73,10 @@ Result<Forecast> forecast(SlabSource& scan, const RunShape& wanted, Detail detai
   RunShape& run = result.run = wanted;
   const std::uint64_t room = available_memory_bytes();
   run.scan = scan.dims();
+  run.threads = thread_count();
   run.half_place = place_for(grid_of(run.scan, true), budget);
   run.vertices = usual_vertices(run.scan);
-  result.detail = choose_detail(detail, run, room, thread_count());
+  result.detail = choose_detail(detail, run, room);
   run.half = result.detail.resample();
   const std::int64_t group = run.half ? 2 * kGroupAfter : kGroupAfter;
   SampledSource some(scan, kGroups * group, group);
@@ -105,8 +106,8 @@ Result<Forecast> forecast(SlabSource& scan, const RunShape& wanted, Detail detai
     return fail(ErrorKind::kBadData, "there is no surface at threshold {:g} in the slices looked at", threshold.value);
   run.vertices =
       static_cast<double>(cells) / static_cast<double>(layers) * static_cast<double>(grid_of(run.scan, run.half).z);
-  if (detail == Detail::kAuto && !run.half && cost_of(run, 1).bytes > static_cast<double>(room)) {
-    result.detail = choose_detail(detail, run, room, thread_count());
+  if (detail == Detail::kAuto && !run.half && cost_of(run).bytes > static_cast<double>(room)) {
+    result.detail = choose_detail(detail, run, room);
     run.half = true;
     run.vertices /= 4.0;
   }
@@ -129,7 +130,7 @@ Result<Forecast> forecast(SlabSource& scan, const RunShape& wanted, Detail detai
     result.seen_bend = look.seen;
     if (result.bent_rays) plan_straightening(run, *result.bent_rays, room);
   }
-  result.cost = cost_of(run, thread_count());
+  result.cost = cost_of(run);
   return result;
 }
 

@@ -21,8 +21,8 @@ constexpr double kBandPoints = 14.0, kBandEffort = 1.8;
 constexpr double kSampleSlices = 96.0, kLeastSlices = 36.0, kMostSampled = 150e6;
 /// Triangles of patches for each vertex: .03 to .06, and .15 where 40 % of the tablet is glued.
 constexpr double kUsualPatches = 0.05;
-/// Whatever the scan and the surface: slabs, the file's caches, rings of filters; heaps of threads.
-constexpr double kForVoxels = 50e6, kForSurfaces = 12e6;
+/// Whatever the scan and the surface: slabs, the file's caches; for each thread counts of values and rows of filters.
+constexpr double kForVoxels = 42e6, kForVoxelsAThread = 5e6, kForSurfaces = 11e6, kForSurfacesAThread = 1e6;
 constexpr double kPage = 20e6;  ///< of a grid that lies on the disk
 
 double scan_points(const RunShape& r) { return static_cast<double>(r.scan.count()); }
@@ -142,7 +142,8 @@ double bytes_of(Value value, const RunShape& run) {
 // clang-format on
 
 double bytes_while(const StagePlan& stage, const RunShape& run) {
-  double bytes = (stage.surface ? kForSurfaces : kForVoxels) + stage.work_bytes(run);
+  double bytes = stage.work_bytes(run) + (stage.surface ? kForSurfaces + kForSurfacesAThread * run.threads
+                                                        : kForVoxels + kForVoxelsAThread * run.threads);
   for (std::size_t v = 0; v < kValues; ++v) {
     const auto value = static_cast<Value>(v);
     bool made = false, needed = false;
@@ -157,13 +158,13 @@ double bytes_while(const StagePlan& stage, const RunShape& run) {
   return bytes;
 }
 
-RunCost cost_of(const RunShape& run, int threads, RunStage first) {
+RunCost cost_of(const RunShape& run, RunStage first) {
   RunCost cost;
   for (const StagePlan& stage : kRunPlan) {
     if (stage.stage < first || !stage.wanted(run)) continue;
     const double core_s = run.slowness * stage.core_s(run);
     cost.core_s += core_s;
-    cost.wall_s += core_s * (stage.serial + (1.0 - stage.serial) / threads);
+    cost.wall_s += core_s * (stage.serial + (1.0 - stage.serial) / run.threads);
     const double bytes = bytes_while(stage, run);
     if (bytes > cost.bytes) {
       cost.bytes = bytes;
@@ -176,7 +177,7 @@ RunCost cost_of(const RunShape& run, int threads, RunStage first) {
 }
 
 Result<void> check_fits(const RunShape& run, std::uint64_t room, RunStage first) {
-  const RunCost cost = cost_of(run, 1, first);
+  const RunCost cost = cost_of(run, first);
   if (cost.bytes <= static_cast<double>(room)) return {};
   const Dims grid = grid_of(run.scan, run.half);
   return fail(ErrorKind::kTryAgain,

@@ -61,7 +61,8 @@ struct RunShape {
   int passes = 2;                             ///< of the denoising filter
   double rays = 160.0;                        ///< of ambient light a vertex; 0: none
   double read_s = 1.1e-9;                     ///< seconds of one core for a voxel that is read
-  double slowness = 1.0;                      ///< seconds of this machine for one of the table's machine
+  int threads = 2;
+  double slowness = 1.0;  ///< seconds of this machine for one of the table's machine
 };
 
 /// A phase of a stage, as Progress::begin() names it, and its part of the stage's time.
@@ -97,8 +98,8 @@ struct RunCost {
 /// Memory while a stage runs: all values that are there, and its own.
 double bytes_while(const StagePlan& stage, const RunShape& run);
 
-/// Of the stages from `first` on, with so many threads. Memory errs by up to a third on the side of too much.
-RunCost cost_of(const RunShape& run, int threads, RunStage first = RunStage::kImport);
+/// Of the stages from `first` on. Memory errs by up to a third on the side of too much.
+RunCost cost_of(const RunShape& run, RunStage first = RunStage::kImport);
 
 /// kTryAgain where the stages from `first` on would take more than `room` bytes, with what, when and how much.
 Result<void> check_fits(const RunShape& run, std::uint64_t room, RunStage first = RunStage::kImport);

@@ -153,7 +153,7 @@ Result<RaysLook> look_for_bent_rays(Overview overview, SlabSource& scan, StageRu
 void plan_straightening(RunShape& run, const BentRays& bent, std::uint64_t room) {
   run.straight =
       StraightPlan{GridPlace::kMemory, bent.crossing_s * crossings_of(grid_of(run.scan, run.half), bent.axis)};
-  if (cost_of(run, 1).bytes > static_cast<double>(room)) run.straight->place = GridPlace::kScratch;
+  if (cost_of(run).bytes > static_cast<double>(room)) run.straight->place = GridPlace::kScratch;
 }
 
 Result<RaysReport> straighten_rays(ImportedGrid& imported, RunShape& shape, std::uint64_t room, const Budget& budget,

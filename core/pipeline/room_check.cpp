@@ -29,10 +29,11 @@ Result<FittingRun> fit_run(ImportedVolume& scan, const RunShape& wanted, Detail 
   RunShape& shape = fitting.run;
   if (memory_limit() == 0) fitting.room = static_cast<std::uint64_t>(static_cast<double>(fitting.room) / kSurely);
   shape.scan = scan.dims();
+  shape.threads = thread_count();
   shape.half_place = place_for(grid_of(shape.scan, true), budget);
   shape.layer_bytes = layer_bytes(scan, budget);
   shape.vertices = usual_vertices(shape.scan);
-  fitting.detail = choose_detail(detail, shape, fitting.room, thread_count());
+  fitting.detail = choose_detail(detail, shape, fitting.room);
   shape.half = fitting.detail.resample();
   const Dims grid = grid_of(shape.scan, shape.half);
   shape.vertices = 0.0;

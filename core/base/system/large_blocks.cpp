@@ -11,6 +11,11 @@ void keep_large_blocks() noexcept {
 
 std::uint64_t spare_heap_bytes() noexcept { return mallinfo2().keepcost; }
 
+void share_heaps() noexcept {
+  mallopt(M_ARENA_MAX, 2);
+  return_large_blocks();
+}
+
 void return_free_memory() noexcept { malloc_trim(0); }
 
 void return_large_blocks() noexcept {

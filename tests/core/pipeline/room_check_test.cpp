@@ -12,6 +12,7 @@
 #include "core/base/system/clock.h"
 #include "core/base/system/large_blocks.h"
 #include "core/base/system/log.h"
+#include "core/base/system/parallel.h"
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/forecast.h"
 #include "core/pipeline/pipeline.h"
@@ -130,7 +131,7 @@ phantom::PhantomOptions glued(phantom::Contact kind, double share, std::uint64_t
 
 TEST_F(Room, ADozenBudgetsAreKeptOrRefusedBeforeTheScanIsRead) {
   SilentProgress progress;
-  return_large_blocks();
+  share_heaps();
   PipelineOptions run = options();
   run.import.path = folder_ / "scan256.h5";
   run.import.budget.scratch_folder = folder_;
@@ -148,6 +149,9 @@ TEST_F(Room, ADozenBudgetsAreKeptOrRefusedBeforeTheScanIsRead) {
   EXPECT_GE(made, 3) << "more is refused than need be";
   EXPECT_LE(made, 6) << "a budget that cannot be kept was accepted";
   EXPECT_GE(try_budgets(Detail::kAuto, {30, 100, 120, 150}), 2) << "half of the scan's resolution fits";
+  set_thread_count(16);
+  EXPECT_GE(try_budgets(Detail::kScan, {180, 220, 260}), 1) << "of 16 threads";
+  set_thread_count(0);
   // Of this one twice as much is contact as the plan takes for granted.
   ASSERT_TRUE(
       phantom::write_phantom(run.import.path, std::nullopt, glued(phantom::Contact::kFilm, 0.3, 902), progress));
