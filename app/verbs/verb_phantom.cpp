@@ -62,12 +62,16 @@ Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
   wanted.envelope_density = model.envelope_density;
   wanted.rings = model.rings;
   wanted.blur_vox = model.blur_vox;
+  wanted.cupping = model.cupping;
+  wanted.streaks = model.streaks;
+  wanted.holder = model.holder;
   wanted.written = !options.unwritten;
   if (options.scanned) {
     if (options.recipe)
-      return fail(ErrorKind::kUsage,
-                  "phantom: --snr, --blur and --rings belong to the recipe without a scanner; with --scanner say "
-                  "photons=, blur= and rings= in its list");
+      return fail(
+          ErrorKind::kUsage,
+          "phantom: --snr, --blur and --rings, --cupping and --streaks belong to the recipe without a scanner; with "
+          "--scanner say photons=, blur=, rings= and scatter= in its list");
     DUBSAR_ASSIGN(wanted.scanner, phantom::parse_scanner(options.scanner));
   }
   std::optional<std::filesystem::path> truth;
@@ -125,7 +129,7 @@ Verb add_phantom_verb(Arguments program) {
   phantom::PhantomOptions& model = options->model;
   command.value("--snr", model.snr_db, "signal-to-noise ratio of the raw scan in dB").range(0.0, 120.0);
   command.value("--blur", model.blur_vox, "standard deviation of the point spread in voxels (default 0.577)")
-      .range(0.3, 0.8);
+      .range(0.3, 1.1);
   command.writes("--truth", options->truth, FileFormat::kPhantom,
                  "HDF5 file for labels, signed distances, the true interface and the table of wedges");
   Arguments contact = command.group("Tablet and envelope");
@@ -143,6 +147,11 @@ Verb add_phantom_verb(Arguments program) {
   contact.flag("--unwritten", options->unwritten, "nobody wrote on the tablet");
   contact.value("--envelope-density", model.envelope_density, "of its clay, relative to the tablet's").range(0.5, 1.5);
   contact.value("--rings", model.rings, "ring artefacts: standard deviation relative to clay").range(0.0, 1.0);
+  contact.value("--cupping", model.cupping, "how much less clay counts at the axis of rotation, share").range(0.0, 0.5);
+  contact.value("--streaks", model.streaks, "streaks between dense points: standard deviation relative to clay")
+      .range(0.0, 0.3);
+  contact.value("--holder", model.holder, "density of a holder that the lower end stands in, relative to clay")
+      .range(0.02, 3.0);
   command
       .value("--scanner", options->scanner,
              "scans it as an X-ray scanner does, instead of the recipe of --snr, --blur and --rings: good (default), "
@@ -156,7 +165,8 @@ Verb add_phantom_verb(Arguments program) {
       "dubsar phantom scan.h5 --size 256x160x240 --scanner medium,turn=half,cone=0 --truth truth.h5");
   return {command, [options, command](const CommonOptions&, Progress& progress) {
             options->scanned = command.given("--scanner");
-            options->recipe = command.given("--snr") || command.given("--blur") || command.given("--rings");
+            options->recipe = command.given("--snr") || command.given("--blur") || command.given("--rings") ||
+                              command.given("--cupping") || command.given("--streaks");
             return run(*options, progress);
           }};
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/system/parallel.h"
+#include "core/phantom/holder.h"
 
 namespace dubsar::phantom {
 namespace {
@@ -55,6 +56,7 @@ void rasterise_density(const Phantom& phantom, const VoxelBounds& box, float* ou
             row(y, z)[x] = density(f, phantom.options());
           });
   });
+  add_holder(phantom, box, out);
 }
 
 GridFrame scan_frame(const PhantomOptions& options) {

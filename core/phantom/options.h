@@ -42,8 +42,11 @@ struct PhantomOptions {
   bool written = true;            ///< false: nobody wrote on the tablet
   double envelope_density = 1.0;  ///< of the envelope's clay, relative to the tablet's
   double rings = 0.0;             ///< standard deviation of ring artefacts, relative to clay
-  double blur_vox = kUsualBlur;   ///< standard deviation of the point spread along each axis, 0.3 to 0.8
-  std::optional<ScannerOptions> scanner{};  ///< a simulated scanner instead of snr_db, rings and blur_vox
+  double blur_vox = kUsualBlur;   ///< standard deviation of the point spread along each axis, 0.3 to 1.1
+  double cupping = 0.0;           ///< how much less clay counts at the axis of rotation, share
+  double streaks = 0.0;           ///< standard deviation of streaks between dense points, relative to clay
+  double holder = 0.0;            ///< density of the holder that the lower end stands in, relative to clay; 0: none
+  std::optional<ScannerOptions> scanner{};  ///< a simulated scanner instead of snr_db, blur_vox and artefacts
 };
 
 /// "tiny" 96x64x96, "demo" 512x272x472, "paper" 1871x999x1723 (38 um). kUsage for any other name.
@@ -51,7 +54,8 @@ Result<PhantomOptions> parse_preset(std::string_view name);
 
 /// Checks size (32 voxels to 65535 along each axis, and the memory budget's voxel limit), noise (0..120 dB or
 /// infinity), voxel edge, film (0.05 to 2 voxels), share of contact (up to 0.6), gap (1 to 64 voxels), wedges (2 to 64
-/// voxels), density (0.5 to 1.5), rings (up to 1) and blur (0.3 to 0.8), and fills in voxel_mm when it is 0. kUsage.
+/// voxels), density (0.5 to 1.5), rings (up to 1), blur (0.3 to 1.1), cupping (up to 0.5), streaks (up to 0.3) and
+/// holder (0.02 to 3), and fills in voxel_mm when it is 0. kUsage.
 Result<PhantomOptions> complete(PhantomOptions options);
 
 /// The scan shows a border between the two clays: a film of air, or different densities.

@@ -73,7 +73,7 @@ Statistics measure(const Volume<float>& volume, const Phantom& phantom, const Gr
 }
 
 TEST(PhantomScan, IsAsNoisyAsAskedForWhateverItsBlur) {
-  for (const double blur : {0.35, 0.8}) {
+  for (const double blur : {0.35, 0.8, 1.0}) {
     PhantomOptions options;
     options.dims = {192, 120, 180};
     options.seed = 5511;
@@ -120,6 +120,94 @@ TEST(PhantomScan, EdgeSpreadIsThatOfVoxelAndPsf) {
   const double slope = (n * sdv - sd * sv) / (n * sdd - sd * sd), at_zero = (sv - slope * sd) / n;
   EXPECT_NEAR(at_zero, 0.5, 0.02);
   EXPECT_NEAR(slope, -0.62, 0.06);
+}
+
+TEST(PhantomScan, IsAsBlurredAsAskedForBeyondThreeTaps) {
+  // The slope at the smooth outside of a blur of .9 voxel and a voxel's own extent: 1 / sqrt(2 pi (.81 + 1/12)).
+  PhantomOptions options;
+  options.dims = {224, 119, 207};
+  options.seed = 2;
+  options.snr_db = std::numeric_limits<double>::infinity();
+  options.blur_vox = 0.9;
+  const auto phantom = std::shared_ptr<const Phantom>(Phantom::create(options).value());
+  const Volume<float> volume = scan(phantom, 32);
+  double n = 0, sd = 0, sv = 0, sdd = 0, sdv = 0;
+  for (std::int64_t z = 0; z < volume.dims.z; z += 2)
+    for (std::int64_t y = 0; y < volume.dims.y; y += 2)
+      for (std::int64_t x = 0; x < volume.dims.x; ++x) {
+        const Fields f = phantom->fields(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+        if (std::abs(f.clay.v) > 0.5f || std::abs(f.outer.v) > 0.5f) continue;
+        const double d =
+            phantom->signed_distance({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+        if (std::abs(d) > 0.3) continue;
+        const auto v = static_cast<double>(volume.at(x, y, z)) / 0.0017;
+        n += 1, sd += d, sv += v, sdd += d * d, sdv += d * v;
+      }
+  ASSERT_GT(n, 1000);
+  EXPECT_NEAR((n * sdv - sd * sv) / (n * sdd - sd * sd), -1.0 / std::sqrt(2.0 * M_PI * (0.81 + 1.0 / 12.0)), 0.04);
+}
+
+/// Differences of two scans in parts of clay, by place.
+struct Difference {
+  Volume<float> of, without;
+  double operator()(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return static_cast<double>(of.at(x, y, z) - without.at(x, y, z)) / static_cast<double>(kClayDensity);
+  }
+};
+
+template <class Change>
+Difference difference(const Change& change) {
+  PhantomOptions options;
+  options.dims = {160, 96, 120};
+  options.seed = 77;
+  options.snr_db = std::numeric_limits<double>::infinity();
+  const auto without = std::shared_ptr<const Phantom>(Phantom::create(options).value());
+  change(options);
+  const auto with = std::shared_ptr<const Phantom>(Phantom::create(options).value());
+  return {scan(with, 50), scan(without, 50)};
+}
+
+TEST(PhantomScan, CuppingTakesClayFromTheMiddleAndNothingFromAir) {
+  const Difference d = difference([](PhantomOptions& o) { o.cupping = 0.15; });
+  int clay = 0;
+  for (std::int64_t z = 10; z < 110; z += 3) {
+    const auto middle = static_cast<double>(d.without.at(79, 47, z));
+    EXPECT_NEAR(d(79, 47, z), -0.15 * middle / static_cast<double>(kClayDensity), 1e-3);
+    clay += middle > 0.9 * static_cast<double>(kClayDensity);
+    EXPECT_EQ(d(1, 1, z), 0.0);
+  }
+  EXPECT_GT(clay, 10);
+}
+
+TEST(PhantomScan, StreaksHaveTheDeviationThatWasAskedFor) {
+  const Difference d = difference([](PhantomOptions& o) { o.streaks = 0.06; });
+  double sum = 0.0, squares = 0.0, n = 0.0;
+  for (std::int64_t z = 0; z < 120; ++z)
+    for (std::int64_t y = 0; y < 96; ++y)
+      for (std::int64_t x = 0; x < 160; ++x) {
+        const double v = d(x, y, z);
+        sum += v, squares += v * v, n += 1.0;
+      }
+  EXPECT_NEAR(sum / n, 0.0, 0.005);
+  EXPECT_NEAR(std::sqrt(squares / n), 0.06, 0.015);  // lines do not all cross the whole of a slice
+}
+
+TEST(PhantomScan, AHolderStandsAroundTheLowerEndOnly) {
+  const Difference d = difference([](PhantomOptions& o) { o.holder = 0.3; });
+  double inside_air = 0.0, above = 0.0, inside_clay = 0.0;
+  for (std::int64_t z = 0; z < 120; ++z)
+    for (std::int64_t y = 0; y < 96; ++y)
+      for (std::int64_t x = 0; x < 160; ++x) {
+        const double v = d(x, y, z);
+        if (z > 27) above = std::max(above, std::abs(v));
+        if (static_cast<double>(d.without.at(x, y, z)) > 0.98 * static_cast<double>(kClayDensity))
+          inside_clay = std::max(inside_clay, v);
+        inside_air = std::max(inside_air, v);
+      }
+  EXPECT_NEAR(d(79, 85, 12), 0.3, 1e-4);
+  EXPECT_NEAR(inside_air, 0.3, 1e-4);
+  EXPECT_EQ(above, 0.0);
+  EXPECT_LT(inside_clay, 0.02);
 }
 
 }  // namespace
