@@ -171,6 +171,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   }
   judged.stages = result.report.stages;
   judged.blur = result.report.scan.blur;
+  judged.sharpen = result.report.surface_by.sharpen.amount;
   judged.traced = result.report.contact && result.report.contact->traced;
   if (result.report.contact) judged.remark = result.report.contact->why;
   if (!how.judge) return judged;
@@ -190,6 +191,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   judged.contact = phantom::judge_contact(*truth, {positions, tablet->triangles, {}, judged.step}, tablet->evidence);
   judge_tablet(*truth, *tablet, positions, judged);
   judged.tablet.settled = settle_tablet(*truth, *tablet, positions);
+  if (how.cover) judged.cover = cover_tablet(*truth, *tablet, positions, in_voxels(*envelope));
   if (how.places)
     for (const phantom::FalseWedge& wedge : judged.contact.invented)
       fmt::print(

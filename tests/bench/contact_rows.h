@@ -13,6 +13,7 @@
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
 #include "tests/bench/settled_tablet.h"
+#include "tests/bench/tablet_cover.h"
 #include "tests/core/phantom/contact_score.h"
 
 namespace dubsar {
@@ -38,6 +39,8 @@ struct JudgedRow {
   phantom::ContactScore contact;
   phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
   TabletError tablet;
+  TabletCover cover;
+  float sharpen = 0.0f;                 ///< amount that was used
   std::int64_t crossings = 0;           ///< pairs of triangles, one of a patch, that cross on tablet or envelope
   std::int64_t self_crossings = 0;      ///< pairs of the surface itself
   std::int64_t touching = 0, flat = 0;  ///< pairs of triangles of tablet or envelope, and triangles: check_exactly()
@@ -54,6 +57,7 @@ struct JudgeOptions {
   ContactMesh mesh = ContactMesh::kPatches;
   bool light = false;   ///< with ambient occlusion, so that the times are those of `dubsar process`
   bool judge = true;    ///< false: times and memory only
+  bool cover = false;   ///< fills in JudgedRow::cover
   bool places = false;  ///< prints where a wedge was invented
 };
 

@@ -15,6 +15,7 @@
 #include "core/base/system/log.h"
 #include "tests/bench/contact_rows.h"
 #include "tests/bench/real_volumes.h"
+#include "tests/bench/recipe_rows.h"
 #include "tests/bench/scanner_rows.h"
 
 namespace dubsar {
@@ -28,12 +29,13 @@ struct Arguments {
   ContactMesh mesh = ContactMesh::kPatches;
   std::string only;     ///< names of rows, with commas
   std::string volumes;  ///< a folder of scans that are not of tablets
-  bool large = false, costs = false, places = false, scanner = false;
+  bool large = false, costs = false, places = false, scanner = false, recipe = false;
 };
 
 constexpr std::string_view kHelp =
     "wedges_bench [--quick | --size XxYxZ] [--seed N] [--seeds COUNT] [--only ROW,ROW] [--detail auto|scan|half]\n"
-    "             [--contact patches|labels] [--places] [--costs] [--large] [--scanner] | --volumes FOLDER\n"
+    "             [--contact patches|labels] [--places] [--costs] [--large] [--scanner | --recipe] | --volumes "
+    "FOLDER\n"
     "  --quick   256x160x240, minutes; else 512x320x480\n"
     "  --seed    phantoms of this seed, --seeds: so many of each kind; none: a fresh one, which is printed\n"
     "  --only    rows: text, pressed, pockets, film 1, film 0.5, film 0.35, film 0.2, filled, unwritten,\n"
@@ -45,6 +47,9 @@ constexpr std::string_view kHelp =
     "  --scanner  scans of a simulated scanner instead, a table of docs/scans.md; rows: clean, hardening, scatter 12 "
     "%,\n"
     "            axis 1, gains 1.2 %, few photons, few views, good, mild, medium, strong, cone strong and others\n"
+    "  --recipe  one artefact at a time instead, another table of docs/scans.md; rows: recipe, cupping .15, streaks "
+    ".06,\n"
+    "            rings .05, blur .9, 14 dB, holder .3, holder .7, hard\n"
     "  --volumes FOLDER  processes the HDF5 files in it; exit code 1 where one fails or has a tablet\n";
 
 [[noreturn]] void usage(int code) {
@@ -68,6 +73,8 @@ Arguments parse(int argc, char** argv) {
       a.costs = true;
     } else if (word == "--scanner") {
       a.scanner = true;
+    } else if (word == "--recipe") {
+      a.recipe = true;
     } else if (word == "--places") {
       a.places = true;
     } else if (i + 1 == argc) {
@@ -264,9 +271,9 @@ void print_costs(const Dims& dims, Detail detail) {
 int run(int argc, char** argv) {
   const Arguments a = parse(argc, argv);
   if (!a.volumes.empty()) return print_real_volumes(a.volumes) > 0 ? 1 : 0;
-  if (a.scanner) {
+  if (a.scanner || a.recipe) {
     fmt::print("{}x{}x{}, seed {}, no options\n", a.dims.x, a.dims.y, a.dims.z, a.seed);
-    print_scanner_rows(a.dims, a.seed, a.seeds, a.only);
+    (a.scanner ? print_scanner_rows : print_recipe_rows)(a.dims, a.seed, a.seeds, a.only);
     return 0;
   }
   if (a.costs || a.large) {
