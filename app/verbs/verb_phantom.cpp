@@ -62,9 +62,7 @@ Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
   wanted.envelope_density = model.envelope_density;
   wanted.rings = model.rings;
   wanted.blur_vox = model.blur_vox;
-  wanted.cupping = model.cupping;
-  wanted.streaks = model.streaks;
-  wanted.holder = model.holder;
+  wanted.artefacts = model.artefacts;
   wanted.written = !options.unwritten;
   if (options.scanned) {
     if (options.recipe)
@@ -147,10 +145,13 @@ Verb add_phantom_verb(Arguments program) {
   contact.flag("--unwritten", options->unwritten, "nobody wrote on the tablet");
   contact.value("--envelope-density", model.envelope_density, "of its clay, relative to the tablet's").range(0.5, 1.5);
   contact.value("--rings", model.rings, "ring artefacts: standard deviation relative to clay").range(0.0, 1.0);
-  contact.value("--cupping", model.cupping, "how much less clay counts at the axis of rotation, share").range(0.0, 0.5);
-  contact.value("--streaks", model.streaks, "streaks between dense points: standard deviation relative to clay")
+  contact.value("--cupping", model.artefacts.cupping, "how much less clay counts at the axis of rotation, share")
+      .range(0.0, 0.5);
+  contact
+      .value("--streaks", model.artefacts.streaks, "streaks between dense points: standard deviation relative to clay")
       .range(0.0, 0.3);
-  contact.value("--holder", model.holder, "density of a holder that the lower end stands in, relative to clay")
+  contact
+      .value("--holder", model.artefacts.holder, "density of a holder that the lower end stands in, relative to clay")
       .range(0.02, 3.0);
   command
       .value("--scanner", options->scanner,

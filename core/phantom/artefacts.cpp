@@ -32,8 +32,8 @@ std::vector<float> ring_profile(const PhantomOptions& options) {
 }  // namespace
 
 ScanArtefacts::ScanArtefacts(const PhantomOptions& options)
-    : dims_(options.dims), cupping_(options.cupping), rings_(ring_profile(options)) {
-  if (options.streaks <= 0.0) return;
+    : dims_(options.dims), cupping_(options.artefacts.cupping), rings_(ring_profile(options)) {
+  if (options.artefacts.streaks <= 0.0) return;
   Random random(options.seed, 0x73747265616b);
   const glm::dvec2 middle{0.5 * static_cast<double>(dims_.x - 1), 0.5 * static_cast<double>(dims_.y - 1)};
   const auto dense_point = [&] {
@@ -62,7 +62,7 @@ ScanArtefacts::ScanArtefacts(const PhantomOptions& options)
         line.height * line.height * along * 0.75 * std::sqrt(pi) * kStreakWidth * std::sqrt(pi) * kStreakThickness;
   }
   const double deviation = std::sqrt(squares / static_cast<double>(dims_.count()));
-  if (deviation > 0.0) streak_height_ = options.streaks * kContrast / deviation;
+  if (deviation > 0.0) streak_height_ = options.artefacts.streaks * kContrast / deviation;
 }
 
 void ScanArtefacts::apply(std::int64_t y, std::int64_t z, std::span<float> row) const {

@@ -16,12 +16,12 @@ float share_within(double distance) { return static_cast<float>(std::clamp(0.5 -
 
 void add_holder(const Phantom& phantom, const VoxelBounds& box, float* out) {
   const PhantomOptions& o = phantom.options();
-  if (o.holder <= 0.0) return;
+  if (o.artefacts.holder <= 0.0) return;
   const double top = kHolderHeight * static_cast<double>(o.dims.z);
   const double a = 0.5 * kHolderWidth * static_cast<double>(o.dims.x),
                b = 0.5 * kHolderWidth * static_cast<double>(o.dims.y);
   const double x_middle = 0.5 * static_cast<double>(o.dims.x - 1), y_middle = 0.5 * static_cast<double>(o.dims.y - 1);
-  const float density = static_cast<float>(o.holder) * (kClayDensity - kAirDensity);
+  const float density = static_cast<float>(o.artefacts.holder) * (kClayDensity - kAirDensity);
   const std::int64_t width = box.hi[0] - box.lo[0], height = box.hi[1] - box.lo[1];
   parallel_for((box.hi[2] - box.lo[2]) * height, 8, [&](std::int64_t item) {
     const std::int64_t y = box.lo[1] + item % height, z = box.lo[2] + item / height;

@@ -54,8 +54,9 @@ Result<PhantomOptions> complete(PhantomOptions options) {
         Limit{"depth of wedges", options.wedge_depth_vox, 2.0, 64.0, true},
         Limit{"density of the envelope", options.envelope_density, 0.5, 1.5, false},
         Limit{"rings", options.rings, 0.0, 1.0, true}, Limit{"blur", options.blur_vox, 0.3, 1.1, false},
-        Limit{"cupping", options.cupping, 0.0, 0.5, true}, Limit{"streaks", options.streaks, 0.0, 0.3, true},
-        Limit{"density of the holder", options.holder, 0.02, 3.0, true}})
+        Limit{"cupping", options.artefacts.cupping, 0.0, 0.5, true},
+        Limit{"streaks", options.artefacts.streaks, 0.0, 0.3, true},
+        Limit{"density of the holder", options.artefacts.holder, 0.02, 3.0, true}})
     if (!(limit.value >= limit.least && limit.value <= limit.most) && !(limit.zero && limit.value == 0.0))
       return fail(ErrorKind::kUsage, "phantom: {} {} found, expected {} to {}", limit.what, limit.value, limit.least,
                   limit.most);

@@ -29,6 +29,13 @@ static_assert(names_all(kContacts, static_cast<std::size_t>(Contact::kFilm) + 1)
 /// Of a point spread [1 4 1]/6 along each axis: sqrt(1/3), voxels.
 inline constexpr double kUsualBlur = 0.57735026918962576;
 
+/// What a scan may have besides, relative to clay; 0: nothing.
+struct AddedArtefacts {
+  double cupping = 0.0;  ///< how much less clay counts at the axis of rotation
+  double streaks = 0.0;  ///< standard deviation of streaks between dense points
+  double holder = 0.0;   ///< density of the holder that the lower end stands in
+};
+
 struct PhantomOptions {
   Dims dims{512, 272, 472};
   std::uint64_t seed = 1;
@@ -43,9 +50,7 @@ struct PhantomOptions {
   double envelope_density = 1.0;  ///< of the envelope's clay, relative to the tablet's
   double rings = 0.0;             ///< standard deviation of ring artefacts, relative to clay
   double blur_vox = kUsualBlur;   ///< standard deviation of the point spread along each axis, 0.3 to 1.1
-  double cupping = 0.0;           ///< how much less clay counts at the axis of rotation, share
-  double streaks = 0.0;           ///< standard deviation of streaks between dense points, relative to clay
-  double holder = 0.0;            ///< density of the holder that the lower end stands in, relative to clay; 0: none
+  AddedArtefacts artefacts{};
   std::optional<ScannerOptions> scanner{};  ///< a simulated scanner instead of snr_db, blur_vox and artefacts
 };
 

@@ -191,7 +191,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   judged.contact = phantom::judge_contact(*truth, {positions, tablet->triangles, {}, judged.step}, tablet->evidence);
   judge_tablet(*truth, *tablet, positions, judged);
   judged.tablet.settled = settle_tablet(*truth, *tablet, positions);
-  if (how.cover) judged.cover = cover_tablet(*truth, *tablet, positions, in_voxels(*envelope));
+  if (how.cover) judged.tablet.cover = cover_tablet(*truth, *tablet, positions, in_voxels(*envelope));
   if (how.places)
     for (const phantom::FalseWedge& wedge : judged.contact.invented)
       fmt::print(

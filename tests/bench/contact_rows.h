@@ -33,13 +33,13 @@ struct TabletError {
   double rms = 0.0;  ///< from the tablet's true surface, voxels, where the gap is at least as wide as seen by the scan
   double stray = 0.0;  ///< share of all of them farther than three voxels
   SettledTablet settled;
+  TabletCover cover;
 };
 
 struct JudgedRow {
   phantom::ContactScore contact;
   phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
   TabletError tablet;
-  TabletCover cover;
   float sharpen = 0.0f;                 ///< amount that was used
   std::int64_t crossings = 0;           ///< pairs of triangles, one of a patch, that cross on tablet or envelope
   std::int64_t self_crossings = 0;      ///< pairs of the surface itself
@@ -57,7 +57,7 @@ struct JudgeOptions {
   ContactMesh mesh = ContactMesh::kPatches;
   bool light = false;   ///< with ambient occlusion, so that the times are those of `dubsar process`
   bool judge = true;    ///< false: times and memory only
-  bool cover = false;   ///< fills in JudgedRow::cover
+  bool cover = false;   ///< fills in TabletError::cover
   bool places = false;  ///< prints where a wedge was invented
 };
 

@@ -29,11 +29,11 @@ constexpr Figure kFigures[] = {
     {"mean depth of true", 2, [](const JudgedRow& r) { return r.seen.wedges.mean_ratio; }},
     {"tablet's error after the best shift, RMS", 3, [](const JudgedRow& r) { return r.tablet.settled.rms; }},
     {"recall of the tablet", 3, [](const JudgedRow& r) { return r.seen.owner[0].recall(); }},
-    {"its surface seen", 4, [](const JudgedRow& r) { return r.cover.measured; }},
-    {"called contact", 4, [](const JudgedRow& r) { return r.cover.patch; }},
-    {"called envelope", 4, [](const JudgedRow& r) { return r.cover.envelope; }},
-    {"1 to 3 voxels off", 4, [](const JudgedRow& r) { return r.cover.off; }},
-    {"not there", 4, [](const JudgedRow& r) { return r.cover.nothing; }},
+    {"its surface seen", 4, [](const JudgedRow& r) { return r.tablet.cover.measured; }},
+    {"called contact", 4, [](const JudgedRow& r) { return r.tablet.cover.patch; }},
+    {"called envelope", 4, [](const JudgedRow& r) { return r.tablet.cover.envelope; }},
+    {"1 to 3 voxels off", 4, [](const JudgedRow& r) { return r.tablet.cover.off; }},
+    {"not there", 4, [](const JudgedRow& r) { return r.tablet.cover.nothing; }},
     {"vertices of pores that noise made, %", 3,
      [](const JudgedRow& r) { return 100.0 * r.tablet.settled.noise_pores; }},
     {"sharpened by", 2, [](const JudgedRow& r) { return static_cast<double>(r.sharpen); }},
@@ -49,26 +49,31 @@ std::vector<ContactRow> recipe_rows(const Dims& dims, std::uint64_t seed) {
     o.seed = seed;
     o.wedge_depth_vox = 5.0;
     o.rings = 0.01;
-    o.cupping = 0.05;
+    o.artefacts.cupping = 0.05;
     change(o);
     rows.push_back({std::move(name), o});
   };
   add("recipe", [](auto&) {});
-  add("cupping .15", [](auto& o) { o.cupping = 0.15; });
-  add("streaks .06", [](auto& o) { o.streaks = 0.06; });
+  add("cupping .15", [](auto& o) { o.artefacts.cupping = 0.15; });
+  add("streaks .06", [](auto& o) { o.artefacts.streaks = 0.06; });
   add("rings .05", [](auto& o) { o.rings = 0.05; });
   add("blur .9", [](auto& o) { o.blur_vox = 0.9; });
   add("14 dB", [](auto& o) { o.snr_db = 14.0; });
-  add("holder .3", [](auto& o) { o.holder = 0.3; });
-  add("holder .7", [](auto& o) { o.holder = 0.7; });
-  add("hard", [](auto& o) {
-    o.cupping = 0.15;
-    o.streaks = 0.06;
+  add("holder .3", [](auto& o) { o.artefacts.holder = 0.3; });
+  add("holder .7", [](auto& o) { o.artefacts.holder = 0.7; });
+  const auto hard = [](auto& o) {
+    o.artefacts.cupping = 0.15;
+    o.artefacts.streaks = 0.02;
     o.rings = 0.05;
     o.blur_vox = 0.9;
     o.snr_db = 14.0;
-    o.holder = 0.3;
+    o.artefacts.holder = 0.3;
     o.contact_share = 0.25;
+  };
+  add("hard", hard);
+  add("hard, streaks .06", [&](auto& o) {
+    hard(o);
+    o.artefacts.streaks = 0.06;
   });
   return rows;
 }

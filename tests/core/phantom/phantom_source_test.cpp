@@ -168,7 +168,7 @@ Difference difference(const Change& change) {
 }
 
 TEST(PhantomScan, CuppingTakesClayFromTheMiddleAndNothingFromAir) {
-  const Difference d = difference([](PhantomOptions& o) { o.cupping = 0.15; });
+  const Difference d = difference([](PhantomOptions& o) { o.artefacts.cupping = 0.15; });
   int clay = 0;
   for (std::int64_t z = 10; z < 110; z += 3) {
     const auto middle = static_cast<double>(d.without.at(79, 47, z));
@@ -180,7 +180,7 @@ TEST(PhantomScan, CuppingTakesClayFromTheMiddleAndNothingFromAir) {
 }
 
 TEST(PhantomScan, StreaksHaveTheDeviationThatWasAskedFor) {
-  const Difference d = difference([](PhantomOptions& o) { o.streaks = 0.06; });
+  const Difference d = difference([](PhantomOptions& o) { o.artefacts.streaks = 0.06; });
   double sum = 0.0, squares = 0.0, n = 0.0;
   for (std::int64_t z = 0; z < 120; ++z)
     for (std::int64_t y = 0; y < 96; ++y)
@@ -193,7 +193,7 @@ TEST(PhantomScan, StreaksHaveTheDeviationThatWasAskedFor) {
 }
 
 TEST(PhantomScan, AHolderStandsAroundTheLowerEndOnly) {
-  const Difference d = difference([](PhantomOptions& o) { o.holder = 0.3; });
+  const Difference d = difference([](PhantomOptions& o) { o.artefacts.holder = 0.3; });
   double inside_air = 0.0, above = 0.0, inside_clay = 0.0;
   for (std::int64_t z = 0; z < 120; ++z)
     for (std::int64_t y = 0; y < 96; ++y)
