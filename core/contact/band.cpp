@@ -17,8 +17,9 @@ bool between(const SurfaceModel& model, const FillPatch& patch) {
   return is_tablet(patch.partition) != is_tablet(patch.reverse_partition);
 }
 
-/// The nearest sample of points: found by fronts of rising distance for every other point along each axis, and between
-/// those by looking at what they know.
+/// The nearest sample of points: found by fronts of rising distance for every other point along each axis, between
+/// those by looking at what they know, and then among the samples around that one: fronts leave out most of those that
+/// are closer together than the points from which they run.
 class NearestSamples {
  public:
   static Result<NearestSamples> find(const std::vector<PatchPoint>& samples, const Dims& dims, float reach,
@@ -71,7 +72,23 @@ class NearestSamples {
       : samples_(samples),
         dims_(dims),
         reach_(reach),
-        known_({dims.x / 2 + 1, dims.y / 2 + 1, dims.z / 2 + 1}, ContactBand::kNone) {}
+        known_({dims.x / 2 + 1, dims.y / 2 + 1, dims.z / 2 + 1}, ContactBand::kNone),
+        first_at_(known_.dims(), ContactBand::kNone),
+        next_(samples.size(), ContactBand::kNone) {
+    for (std::uint32_t s = 0; s < samples.size(); ++s) {
+      const glm::ivec3 c = coarse_place(s);
+      if (!in_coarse(c)) continue;
+      std::uint32_t& first = first_at_.at(c.x, c.y, c.z);
+      next_[s] = first;
+      first = s;
+    }
+  }
+
+  glm::ivec3 coarse_place(std::uint32_t s) const { return glm::ivec3(glm::round(0.5f * samples_[s].position)); }
+  bool in_coarse(const glm::ivec3& p) const {
+    const Dims& d = known_.dims();
+    return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < d.x && p.y < d.y && p.z < d.z;
+  }
 
   float distance(const glm::ivec3& coarse, std::uint32_t s) const {
     return glm::distance(2.0f * glm::vec3(coarse), samples_[s].position);
@@ -81,9 +98,8 @@ class NearestSamples {
     constexpr float kBucket = 0.5f;
     const float reach = reach_ + 2.0f;  // whatever lies between known points is in reach of them
     Buckets buckets(static_cast<std::size_t>(reach / kBucket) + 2);
-    const Dims d = known_.dims();
     const auto offer = [&](const glm::ivec3& p, std::uint32_t s) {
-      if (p.x < 0 || p.y < 0 || p.z < 0 || p.x >= d.x || p.y >= d.y || p.z >= d.z) return;
+      if (!in_coarse(p)) return;
       const std::uint32_t before = known_.get(p.x, p.y, p.z);
       if (before == s) return;
       const float far = distance(p, s);
@@ -91,7 +107,7 @@ class NearestSamples {
       known_.at(p.x, p.y, p.z) = s;
       buckets[static_cast<std::size_t>(far / kBucket)].push_back({p, s});
     };
-    for (std::uint32_t s = 0; s < samples_.size(); ++s) offer(glm::ivec3(glm::round(0.5f * samples_[s].position)), s);
+    for (std::uint32_t s = 0; s < samples_.size(); ++s) offer(coarse_place(s), s);
     for (std::size_t b = 0; b < buckets.size(); ++b) {
       if (progress.cancelled()) return false;
       for (std::size_t i = 0; i < buckets[b].size(); ++i) {
@@ -119,13 +135,37 @@ class NearestSamples {
           least = square;
           nearest = s;
         }
+    constexpr float kFar = 3.0f;  ///< more than any sample beside it is nearer
+    if (nearest != ContactBand::kNone && least < (reach_ + kFar) * (reach_ + kFar))
+      look_around(glm::vec3(p), nearest, least);
     return nearest;
+  }
+
+  /// Goes on to the nearest of the samples in the coarse cells around `nearest`, at the square of a distance `least`.
+  void look_around(const glm::vec3& p, std::uint32_t& nearest, float& least) const {
+    constexpr int kMostSteps = 3;
+    for (int step = 0; step < kMostSteps; ++step) {
+      const std::uint32_t before = nearest;
+      const glm::ivec3 middle = coarse_place(before);
+      for (int k = 0; k < 27; ++k)
+        for (std::uint32_t s = first_at_.get(middle.x + k % 3 - 1, middle.y + k / 3 % 3 - 1, middle.z + k / 9 - 1);
+             s != ContactBand::kNone; s = next_[s]) {
+          const glm::vec3 off = p - samples_[s].position;
+          const float square = glm::dot(off, off);
+          if (square >= least) continue;
+          least = square;
+          nearest = s;
+        }
+      if (nearest == before) break;
+    }
   }
 
   const std::vector<PatchPoint>& samples_;
   Dims dims_;
   float reach_;
   BrickMap<std::uint32_t> known_;
+  BrickMap<std::uint32_t> first_at_;  ///< of the samples in each coarse cell
+  std::vector<std::uint32_t> next_;   ///< of the same cell
 };
 
 }  // namespace
@@ -165,6 +205,15 @@ std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing)
     }
   }
   return points;
+}
+
+glm::vec3 middle_of(const std::vector<PatchPoint>& samples) {
+  glm::vec3 least(INFINITY), most(-INFINITY);
+  for (const PatchPoint& sample : samples) {
+    least = glm::min(least, sample.position);
+    most = glm::max(most, sample.position);
+  }
+  return samples.empty() ? glm::vec3(0.0f) : 0.5f * (least + most);
 }
 
 Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<PatchPoint> samples, float reach,

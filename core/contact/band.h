@@ -36,6 +36,10 @@ struct PatchPoint {
 /// at most `spacing` grid steps apart.
 std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing);
 
+/// Middle of the box around all samples. Statistics over pieces of the contact count the pieces from here: they are the
+/// same wherever the object lies on the grid, and mirrored where it is.
+glm::vec3 middle_of(const std::vector<PatchPoint>& samples);
+
 struct ContactBand {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Node {

@@ -96,8 +96,8 @@ void adopt_islands(const ContactBand& band, std::vector<ClaySide>& side, const s
     if (held[n] == 0) side[n] = ClaySide::kTablet;
 }
 
-/// Four points of a grid face that belong to tablet, envelope, tablet, envelope in turn would pinch the contact: one of
-/// the envelope's goes to the tablet.
+/// Four points of a grid face that belong to tablet, envelope, tablet, envelope in turn would pinch the contact: the
+/// lower one of the envelope's goes to the tablet.
 bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
   constexpr std::uint32_t kNone = ContactBand::kNone;
   const auto pinch_at = [&](std::uint32_t n, std::size_t a) {  // the point of the envelope that goes
@@ -106,7 +106,9 @@ bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
     if (right == kNone || side[n] == side[right]) return kNone;
     const std::uint32_t across = band.at(p + u + v), up = band.at(p + v);
     if (across == kNone || up == kNone || side[n] != side[across] || side[right] != side[up]) return kNone;
-    return side[n] == ClaySide::kEnvelope ? n : right;
+    const std::uint32_t one = side[n] == ClaySide::kEnvelope ? n : right,
+                        other = side[n] == ClaySide::kEnvelope ? across : up;
+    return band.nodes[one].height <= band.nodes[other].height ? one : other;
   };
   using Nodes = std::vector<std::uint32_t>;
   const Nodes pinched = parallel_gather<std::uint32_t>(

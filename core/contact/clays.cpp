@@ -54,16 +54,11 @@ Mean mean_of(const std::vector<float>& values) {
 
 using Layers = std::array<std::vector<float>, kLayers.size()>;
 
-/// Densities over and under the pieces of the contact. Pieces are cubes of patch around the middle of its extent, and
-/// what lies over a place of the patch belongs to its piece: they are the same wherever the object lies on the grid.
+/// Densities over and under the pieces of the contact. Pieces are cubes of patch around its middle, and what lies over
+/// a place of the patch belongs to its piece.
 std::vector<Layers> layers_of_pieces(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
                                      float side) {
-  glm::vec3 least(INFINITY), most(-INFINITY);
-  for (const PatchPoint& sample : band.samples) {
-    least = glm::min(least, sample.position);
-    most = glm::max(most, sample.position);
-  }
-  const glm::vec3 middle = 0.5f * (least + most);
+  const glm::vec3 middle = middle_of(band.samples);
   std::map<std::array<int, 3>, Layers> pieces;
   for (const ContactBand::Node& node : band.nodes) {
     if (std::abs(node.height) < 0.8f * node.distance) continue;
@@ -71,7 +66,7 @@ std::vector<Layers> layers_of_pieces(const ContactBand& band, const BitVolume& i
     for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
       if (height < kLayers[layer][0] || height > kLayers[layer][1]) continue;
       if (air_near(inside, {node.x, node.y, node.z})) continue;
-      const glm::ivec3 piece(glm::floor((band.samples[node.sample].position - middle) / side));
+      const glm::ivec3 piece(glm::round((band.samples[node.sample].position - middle) / side));
       pieces[{piece.x, piece.y, piece.z}][layer].push_back(density.get(node.x, node.y, node.z));
     }
   }
@@ -88,27 +83,27 @@ std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolu
   std::vector<Layers> pieces;
   for (const float side : kPieces)
     if (pieces.size() < kLeastPieces) pieces = layers_of_pieces(band, inside, density, side);
-  std::vector<float> steps, without_gradient, tablet, envelope, deviations;
+  std::vector<float> steps, without_gradient, tablet, envelope, off;
   for (Layers& layers : pieces) {
     const float near = median(layers[1]), beyond = median(layers[2]);
     steps.push_back(beyond - near);
-    tablet.push_back(near);
-    envelope.push_back(beyond);
     if (layers[0].size() >= kLeastNodes)
       without_gradient.push_back(beyond - near - kGradientReach * (near - median(layers[0])));
-    for (float& v : layers[1]) v = std::abs(v - near);
-    deviations.push_back(1.4826f * median(layers[1]));
+    for (const float v : layers[1]) off.push_back(std::abs(v - near));
+    tablet.insert(tablet.end(), layers[1].begin(), layers[1].end());
+    envelope.insert(envelope.end(), layers[2].begin(), layers[2].end());
   }
   if (steps.size() < kLeastPieces || without_gradient.size() < kLeastPieces) return std::nullopt;
   const Mean step = mean_of(steps), own = mean_of(without_gradient);
   ClayContrast contrast;
-  contrast.deviation = std::max(median(deviations), kLeastClayNoise * std::abs(step.value));
+  contrast.deviation = std::max(1.4826f * median(std::move(off)), kLeastClayNoise * std::abs(step.value));
   const bool significant = std::abs(step.value) > kSignificance * step.error &&
                            std::abs(own.value) > 0.5f * kSignificance * own.error &&
                            own.value * step.value > 0.5f * step.value * step.value;
   if (!significant || std::abs(step.value) < contrast.deviation) return std::nullopt;
-  contrast.tablet = median(tablet);
-  contrast.envelope = median(envelope);
+  // Of all clay at once: a median of some dozen pieces moves by a hundredth of the step when a few of them change.
+  contrast.tablet = median(std::move(tablet));
+  contrast.envelope = median(std::move(envelope));
   // Noise that was blurred with the scan (not with the extent of its voxels) and with BandDensity's own low pass is
   // shared by so many voxels.
   const float shared = 4.0f * static_cast<float>(M_PI) * (std::max(blur_variance - 1.0f / 12.0f, 0.0f) + 0.5f);

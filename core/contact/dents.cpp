@@ -43,8 +43,9 @@ std::vector<float> dent_depths(const InterfaceMesh& mesh, const InterfaceRings& 
       next[i] = sheet[i];
       if (rings.all[i].empty()) return;
       glm::vec3 mean(0.0f);
-      for (const std::uint32_t w : rings.all[i]) mean += w < dual ? dual_positions[w] : sheet[w - dual];
-      mean /= static_cast<float>(rings.all[i].size());
+      const float weights = rings.all.each(
+          i, [&](std::uint32_t w, float weight) { mean += weight * (w < dual ? dual_positions[w] : sheet[w - dual]); });
+      mean /= weights;
       next[i] += std::max(glm::dot(mean - sheet[i], up[i]), 0.0f) * up[i];
     });
     sheet.swap(next);

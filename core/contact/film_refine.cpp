@@ -142,9 +142,7 @@ class Follower {
       std::vector<float> ways(mesh_.added.size(), 0.0f);
       each([&](std::size_t i) {
         if (share_[i] <= 0.0f || rings_.all[i].empty()) return;
-        glm::vec3 off(0.0f);
-        for (const std::uint32_t w : rings_.all[i]) off += position(w, mesh_.added);
-        off = off / static_cast<float>(rings_.all[i].size()) - mesh_.added[i];
+        const glm::vec3 off = mean_around(i) - mesh_.added[i];
         ways[i] = kSettle * (1.0f - trust_[i]) * glm::dot(off, normal_[i]);
       });
       move(ways, options_.most);
@@ -158,11 +156,11 @@ class Follower {
     const std::vector<float> depths = dent_depths(mesh_, rings_, dual_);
     each([&](std::size_t i) {
       float bend = 0.0f, squares = 0.0f;
-      for (const std::uint32_t w : rings_.all[i]) {
+      rings_.all.each(i, [&](std::uint32_t w, float weight) {
         const glm::vec3 off = position(w, mesh_.added) - mesh_.added[i];
-        bend += glm::dot(off, normal_[i]);
-        squares += glm::dot(off, off);
-      }
+        bend += weight * glm::dot(off, normal_[i]);
+        squares += weight * glm::dot(off, off);
+      });
       const float in_dent = options_.clays ? 0.0f : std::clamp(depths[i] - kDeep, 0.0f, 1.0f);
       const float variance = options_.blur_variance + kLowPass + kRounding * in_dent;
       if (squares > 0.0f) ways[i] = -2.0f * variance * bend / squares;
@@ -185,9 +183,7 @@ class Follower {
     std::vector<glm::vec3> moved = mesh_.added;
     each([&](std::size_t i) {
       if (share_[i] <= 0.0f || rings_.all[i].empty()) return;
-      glm::vec3 off(0.0f);
-      for (const std::uint32_t w : rings_.all[i]) off += position(w, mesh_.added);
-      off = off / static_cast<float>(rings_.all[i].size()) - mesh_.added[i];
+      const glm::vec3 off = mean_around(i) - mesh_.added[i];
       moved[i] += kSpread * share_[i] * (off - glm::dot(off, normal_[i]) * normal_[i]);
     });
     mesh_.added.swap(moved);
@@ -242,6 +238,12 @@ class Follower {
     });
     average_rings(rings_, kProfileRings, near_, profiles);
     return profiles;
+  }
+  glm::vec3 mean_around(std::size_t i) const {
+    glm::vec3 mean(0.0f);
+    const float weights =
+        rings_.all.each(i, [&](std::uint32_t w, float weight) { mean += weight * position(w, mesh_.added); });
+    return mean / weights;
   }
   glm::vec3 position(std::uint32_t v, const std::vector<glm::vec3>& added) const {
     return v < dual_.size() ? dual_[v] : added[v - dual_.size()];

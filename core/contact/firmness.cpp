@@ -32,7 +32,9 @@ std::vector<bool> beside_contact(const ContactBand& band, const std::vector<Clay
 
 /// Leaves those that are marked within kAsked steps of a place, and none beyond twice that along an axis.
 void keep_near(const ContactBand& band, std::span<const glm::vec3> places, std::vector<bool>& marked) {
-  const auto cube = [](const glm::vec3& p) { return glm::ivec3(glm::floor(p / kAsked)); };
+  const auto cube = [middle = middle_of(band.samples)](const glm::vec3& p) {
+    return glm::ivec3(glm::round((p - middle) / kAsked));
+  };
   std::set<std::array<int, 3>> cubes;
   for (const glm::vec3& place : places)
     for (int k = 0; k < 27; ++k) {

@@ -225,6 +225,7 @@ class Maker {
   /// A quadrilateral by a diagonal, which no other polygon has; more corners by a star.
   void triangulate(const std::array<std::uint32_t, 9>& p, std::size_t size, const glm::vec3& crossing, float strength) {
     if (size == 4) {
+      mesh_.quads.push_back(static_cast<std::uint32_t>(mesh_.triangles.size()));
       mesh_.triangles.push_back({p[0], p[1], p[2]});
       mesh_.triangles.push_back({p[0], p[2], p[3]});
       return;

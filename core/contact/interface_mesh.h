@@ -15,9 +15,12 @@
 namespace dubsar {
 
 struct InterfaceMesh {
-  std::vector<Triangle> triangles;   ///< out of the tablet; id < vertex_count(): dual vertex, else added[id - count]
-  std::vector<glm::vec3> added;      ///< where the density dips, half-way along the edges where nothing is known
-  std::vector<float> strength;       ///< of the dip, of each added vertex
+  std::vector<Triangle> triangles;  ///< out of the tablet; id < vertex_count(): dual vertex, else added[id - count]
+  std::vector<glm::vec3> added;     ///< where the density dips, half-way along the edges where nothing is known
+  std::vector<float> strength;      ///< of the dip, of each added vertex
+  /// Triangle t of each quadrilateral: it was divided into (a, b, c) and, in t + 1, (a, c, d). Which of both diagonals
+  /// that is says nothing about the contact. Where either triangle was changed since, it is none any more.
+  std::vector<std::uint32_t> quads;
   std::int64_t doubled_corners = 0;  ///< cells in which the contact runs from one surface of the air to another
 };
 

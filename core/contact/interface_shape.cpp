@@ -126,15 +126,15 @@ struct Beside {
                added = static_cast<std::uint32_t>(rings.all.size());
     std::unordered_map<std::uint32_t, std::uint32_t> place;
     for (std::size_t i = 0; i < added; ++i) {
-      for (const std::uint32_t w : rings.all[i]) {
+      rings.all.each(i, [&](std::uint32_t w, float weight) {
         if (w >= dual) {
-          ids.add(w - dual);
-          continue;
+          ids.add(w - dual, weight);
+          return;
         }
         const auto [at, fresh] = place.try_emplace(w, static_cast<std::uint32_t>(added + surface.size()));
         if (fresh) surface.push_back(dual_positions[w]);
-        ids.add(at->second);
-      }
+        ids.add(at->second, weight);
+      });
       ids.end_list();
     }
   }
@@ -148,11 +148,10 @@ void relax(InterfaceMesh& mesh, const Beside& beside, const std::vector<std::uin
   const auto round = [&](std::uint8_t which, float share) {
     each_vertex(evidence.size(), [&](std::size_t i) {
       next[i] = now[i];
-      const std::span<const std::uint32_t> around = beside.ids[i];
-      if (evidence[i] != which || around.empty()) return;
+      if (evidence[i] != which || beside.ids[i].empty()) return;
       glm::vec3 mean(0.0f);
-      for (const std::uint32_t w : around) mean += now[w];
-      mean /= static_cast<float>(around.size());
+      const float weights = beside.ids.each(i, [&](std::uint32_t w, float weight) { mean += weight * now[w]; });
+      mean /= weights;
       const glm::vec3 step = now[i] + share * (mean - now[i]) - mesh.added[i];
       const float length = glm::length(step);
       next[i] = mesh.added[i] + (length > most ? most / length : 1.0f) * step;

@@ -89,13 +89,14 @@ std::uint32_t next_clay(const ContactBand& band, const BitVolume& inside, std::u
 std::vector<Ground> grounds_of(const ContactBand& band, const BitVolume& inside, const Dips& dips,
                                const std::vector<ClaySide>& side) {
   std::map<std::array<int, 3>, Cube> cubes;  // in order: sums do not depend on threads
+  const glm::vec3 middle = middle_of(band.samples);
   for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
     for (int axis = 0; axis < 3; ++axis) {
       if (std::abs(band.normal(n)[axis]) < kAcross) continue;
       const std::uint32_t m = next_clay(band, inside, n, axis);
       if (m == ContactBand::kNone || side[n] == side[m]) continue;
       const glm::vec3& p = band.samples[band.nodes[n].sample].position;
-      const glm::ivec3 at(glm::floor(p / kCubeSide));
+      const glm::ivec3 at(glm::round((p - middle) / kCubeSide));
       Cube& cube = cubes[{at.x, at.y, at.z}];
       const bool air = m != band.at(band.point(n) + unit_step(axis));
       cube.heights.push_back(air ? 0.5f * (band.nodes[n].height + band.nodes[m].height)
@@ -158,11 +159,11 @@ float height_at(const std::vector<Ground>& grounds, const glm::vec3& p) {
   return mean - std::max(2.0f * believed / all - 1.0f, 0.0f) * glm::dot(slope, middle);
 }
 
-/// height_at() on a lattice around the samples, and between its points.
+/// height_at() on a lattice around the middle of the samples, and between its points.
 class HeightField {
  public:
   HeightField(const ContactBand& band, const std::vector<Ground>& grounds)
-      : heights_(coarser(band.node_at.dims()), kNotAsked) {
+      : first_(first_point(band.samples)), heights_(size_of(band.samples, first_), kNotAsked) {
     std::vector<glm::ivec3> points;
     for (const PatchPoint& sample : band.samples)
       each_corner(sample.position, [&](const glm::ivec3& q, float) {
@@ -172,7 +173,7 @@ class HeightField {
       });
     parallel_for(static_cast<std::int64_t>(points.size()), 64, [&](std::int64_t i) {
       const glm::ivec3 q = points[static_cast<std::size_t>(i)];
-      heights_.at(q.x, q.y, q.z) = height_at(grounds, kSpacing * glm::vec3(q));
+      heights_.at(q.x, q.y, q.z) = height_at(grounds, first_ + kSpacing * glm::vec3(q));
     });
   }
   float at(const glm::vec3& p) const {
@@ -183,14 +184,20 @@ class HeightField {
 
  private:
   static constexpr float kSpacing = 4.0f, kNotAsked = 1e30f;
-  static Dims coarser(const Dims& d) {
-    const auto along = [](std::int64_t n) { return static_cast<std::int64_t>(static_cast<float>(n) / kSpacing) + 2; };
-    return {along(d.x), along(d.y), along(d.z)};
+  static glm::vec3 first_point(const std::vector<PatchPoint>& samples) {
+    const glm::vec3 middle = middle_of(samples);
+    glm::vec3 half(0.0f);
+    for (const PatchPoint& sample : samples) half = glm::max(half, glm::abs(sample.position - middle));
+    return middle - kSpacing * (glm::ceil(half / kSpacing) + 1.0f);
+  }
+  static Dims size_of(const std::vector<PatchPoint>& samples, const glm::vec3& first) {
+    const glm::ivec3 points(2.0f * glm::round((middle_of(samples) - first) / kSpacing) + 1.0f);
+    return {points.x, points.y, points.z};
   }
   template <class Visit>
   void each_corner(const glm::vec3& p, const Visit& visit) const {
     const Dims d = heights_.dims();
-    const glm::vec3 at = glm::clamp(p / kSpacing, glm::vec3(0.0f), glm::vec3(d.x - 2, d.y - 2, d.z - 2));
+    const glm::vec3 at = glm::clamp((p - first_) / kSpacing, glm::vec3(0.0f), glm::vec3(d.x - 2, d.y - 2, d.z - 2));
     const glm::vec3 low = glm::floor(at), t = at - low;
     for (int k = 0; k < 8; ++k) {
       const glm::ivec3 step(k & 1, k >> 1 & 1, k >> 2);
@@ -198,6 +205,7 @@ class HeightField {
       visit(glm::ivec3(low) + step, share.x * share.y * share.z);
     }
   }
+  glm::vec3 first_;  ///< place of point 0, 0, 0
   BrickMap<float> heights_;
 };
 

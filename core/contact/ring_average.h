@@ -22,12 +22,12 @@ void each_vertex(std::size_t count, const Work& work) {
 
 namespace ring_average {
 template <class T>
-void add(T& sum, const T& v) {
-  sum += v;
+void add(T& sum, const T& v, float weight) {
+  sum += weight * v;
 }
 template <std::size_t N>
-void add(std::array<float, N>& sum, const std::array<float, N>& v) {
-  for (std::size_t i = 0; i < N; ++i) sum[i] += v[i];
+void add(std::array<float, N>& sum, const std::array<float, N>& v, float weight) {
+  for (std::size_t i = 0; i < N; ++i) sum[i] += weight * v[i];
 }
 template <class T>
 void scale(T& v, float by) {
@@ -39,16 +39,17 @@ void scale(std::array<float, N>& v, float by) {
 }
 }  // namespace ring_average
 
-/// Each value becomes the mean of itself and of those of the added vertices beside it, `rounds` times. The same for any
-/// number of threads.
+/// Each value becomes the mean of itself and of those of the added vertices beside it, by their weights, `rounds`
+/// times. The same for any number of threads.
 template <class T>
 void average_rings(const InterfaceRings& around, int rounds, std::vector<T>& values) {
   std::vector<T> next(values.size());
   for (int round = 0; round < rounds; ++round) {
     each_vertex(values.size(), [&](std::size_t i) {
       next[i] = values[i];
-      for (const std::uint32_t w : around.added[i]) ring_average::add(next[i], values[w]);
-      ring_average::scale(next[i], 1.0f / static_cast<float>(around.added[i].size() + 1));
+      const float weights =
+          around.added.each(i, [&](std::uint32_t w, float weight) { ring_average::add(next[i], values[w], weight); });
+      ring_average::scale(next[i], 1.0f / (weights + 1.0f));
     });
     values.swap(next);
   }
@@ -63,14 +64,16 @@ void average_rings(const InterfaceRings& around, int rounds, const std::vector<s
     each_vertex(some.size(), [&](std::size_t k) {
       const std::uint32_t i = some[k];
       next[k] = values[i];
-      for (const std::uint32_t w : around.added[i]) ring_average::add(next[k], values[w]);
-      ring_average::scale(next[k], 1.0f / static_cast<float>(around.added[i].size() + 1));
+      const float weights =
+          around.added.each(i, [&](std::uint32_t w, float weight) { ring_average::add(next[k], values[w], weight); });
+      ring_average::scale(next[k], 1.0f / (weights + 1.0f));
     });
     each_vertex(some.size(), [&](std::size_t k) { values[some[k]] = next[k]; });
   }
 }
 
-/// Normals of the added vertices, towards the envelope, as long as twice the area of the triangles around them.
+/// Normals of the added vertices, towards the envelope, as long as twice the area of the triangles around them, on
+/// average over both ways to divide each quadrilateral.
 inline std::vector<glm::vec3> area_normals(const InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
   const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
@@ -79,6 +82,16 @@ inline std::vector<glm::vec3> area_normals(const InterfaceMesh& mesh, const std:
     const glm::vec3 a = position(t[0]), n = glm::cross(position(t[1]) - a, position(t[2]) - a);
     for (const std::uint32_t v : t)
       if (v >= dual) normals[v - dual] += n;
+  }
+  // The corner triangle at the other end of a diagonal is what one division has there more than the other.
+  for (const std::uint32_t first : mesh.quads) {
+    const auto corner = corners_of_quad(mesh, first);
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (corner[k] < dual) continue;
+      const glm::vec3 a = position(corner[(k + 2) % 4]),
+                      n = glm::cross(position(corner[(k + 3) % 4]) - a, position(corner[(k + 1) % 4]) - a);
+      normals[corner[k] - dual] += (k % 2 == 0 ? -0.5f : 0.5f) * n;
+    }
   }
   return normals;
 }

@@ -180,19 +180,25 @@ std::optional<EdgeSpread> summary(const Folds& folds) {
   EdgeSpread result;
   result.places = places_of(folds);
   std::vector<double> variances, apart;
+  Spread whole;
   for (const Spread& fold : folds) {
     if (fold.places == 0) continue;
+    for (std::size_t b = 0; b < kTwoSides; ++b) {
+      whole.sum[b] += fold.sum[b];
+      whole.count[b] += fold.count[b];
+    }
     variances.push_back(fold.variance());
     for (const double way : fold.halves_apart) apart.push_back(std::abs(way));
   }
   if (result.places < kLeastPlaces) return std::nullopt;
   // Planes are put a little wrong by the noise, and halves by twice as much: that is no blur.
   const double off = 0.5 * 1.4826 * median(std::move(apart));
-  const double spread = median(variances);
-  for (double& v : variances) v = std::abs(v - spread);
+  const double middle = median(variances);
+  for (double& v : variances) v = std::abs(v - middle);
   const auto count = static_cast<double>(variances.size());
   result.uncertainty = 1.4826 * median(std::move(variances)) / std::sqrt(count);
-  result.variance = spread - off * off;
+  // Of all places at once: that of the folds' median scatters by twice as much with where they lie on the grid.
+  result.variance = whole.variance() - off * off;
   if (result.variance <= std::max(kLeastVariance, kSignificant * result.uncertainty)) return std::nullopt;
   return result;
 }
