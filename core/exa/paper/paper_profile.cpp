@@ -10,18 +10,15 @@
 #include "core/base/system/parallel.h"
 #include "core/exa/coding/bit_string.h"
 #include "core/exa/paper/paper_words.h"
+#include "core/exa/values/same_bits.h"
 #include "core/exa/values/vertex_order.h"
 #include "core/extract/extract.h"
 #include "core/relief/curvature/shape_class.h"
 
 namespace dubsar {
 namespace {
-constexpr double kMostSteps = 1 << 20;
+constexpr double kMostPaperSteps = 1 << 20;
 constexpr std::uint8_t kHasShapes = 1, kHasLight = 2, kHasPartitions = 4;
-
-bool same_bits(const glm::vec3& a, const glm::vec3& b) {
-  return std::bit_cast<std::array<std::uint32_t, 3>>(a) == std::bit_cast<std::array<std::uint32_t, 3>>(b);
-}
 
 glm::vec3 placed(const glm::vec3& base, const std::array<std::int32_t, 3>& k) {
   return glm::vec3(glm::dvec3(base) + kPaperStep * glm::dvec3(k[0], k[1], k[2]));
@@ -30,7 +27,7 @@ std::optional<std::array<std::int32_t, 3>> steps_to(const glm::vec3& base, const
   std::array<std::int32_t, 3> k{};
   for (int a = 0; a < 3; ++a) {
     const double steps = (double{wanted[a]} - double{base[a]}) / kPaperStep;
-    if (!(std::abs(steps) <= kMostSteps)) return std::nullopt;
+    if (!(std::abs(steps) <= kMostPaperSteps)) return std::nullopt;
     k[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::lround(steps));
   }
   return k;

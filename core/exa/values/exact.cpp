@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/exa/coding/symbol_coder.h"
+#include "core/exa/values/same_bits.h"
 #include "core/exa/values/vertex_order.h"
 
 namespace dubsar {
@@ -77,11 +78,6 @@ class EscapeCode {
   std::array<SignedNumber, 3> numbers_;
 };
 
-bool same_bits(const glm::vec3& a, const glm::vec3& b) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (std::bit_cast<std::uint32_t>(a[axis]) != std::bit_cast<std::uint32_t>(b[axis])) return false;
-  return true;
-}
 }  // namespace
 
 std::vector<std::string> encode_floats(std::span<const float> values, std::size_t columns, Progress& progress) {
