@@ -17,16 +17,16 @@ TermVector values_at(const std::vector<LaneImage>& images, std::int64_t x, std::
 
 }  // namespace
 
-Evidence gather(const std::vector<LaneImage>& images, const SureMaterials& sure, const PlaneStrides& at,
-                std::span<const std::int64_t> planes) {
+EvenEvidence gather(const std::vector<LaneImage>& images, const SureMaterials& sure, const PlaneStrides& at,
+                    std::span<const std::int64_t> planes) {
   const auto material = [&](std::int64_t x, std::int64_t y, std::size_t lane) {
     return sure
         .of_voxel[static_cast<std::size_t>(planes[lane] * at.to_next + y * at.along_height + x * at.along_width)];
   };
-  return parallel_reduce<Evidence>(
+  return parallel_reduce<EvenEvidence>(
       at.height, 8, {},
       [&](std::int64_t begin, std::int64_t end) {
-        Evidence part;
+        EvenEvidence part;
         for (std::int64_t y = begin; y < end; ++y)
           for (std::int64_t x = 0; x < at.width; ++x)
             for (std::size_t lane = 0; lane + 1 < planes.size(); lane += 2) {
@@ -37,18 +37,18 @@ Evidence gather(const std::vector<LaneImage>& images, const SureMaterials& sure,
             }
         return part;
       },
-      [](Evidence all, const Evidence& part) {
+      [](EvenEvidence all, const EvenEvidence& part) {
         all.add(part);
         return all;
       });
 }
 
-Evenness evenness(const Evidence& evidence, const TermVector& c) {
+Evenness evenness(const EvenEvidence& evidence, const TermVector& c) {
   const double contrast = evidence.clay.mean(c) - evidence.air.mean(c);
   return {evidence.clay.deviation(c) / contrast, evidence.air.deviation(c) / contrast};
 }
 
-TermVector fit(const Evidence& evidence) {
+TermVector fit(const EvenEvidence& evidence) {
   TermMatrix gram{};
   TermVector right{};
   for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {

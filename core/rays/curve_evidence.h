@@ -48,22 +48,22 @@ struct Moments {
   }
 };
 
-struct Evidence {
+struct EvenEvidence {
   Moments clay, air;
-  void add(const Evidence& other) {
+  void add(const EvenEvidence& other) {
     clay.add(other.clay);
     air.add(other.air);
   }
 };
 
 /// Adds pixels that are sure in both planes of a pair: lanes 2 k and 2 k + 1.
-Evidence gather(const std::vector<LaneImage>& images, const SureMaterials& sure, const PlaneStrides& at,
-                std::span<const std::int64_t> planes);
+EvenEvidence gather(const std::vector<LaneImage>& images, const SureMaterials& sure, const PlaneStrides& at,
+                    std::span<const std::int64_t> planes);
 
 /// Of the sum of images with weights c.
-Evenness evenness(const Evidence& evidence, const TermVector& c);
+Evenness evenness(const EvenEvidence& evidence, const TermVector& c);
 
 /// c >= 0 that brings the images nearest to 1 in clay and 0 in air.
-TermVector fit(const Evidence& evidence);
+TermVector fit(const EvenEvidence& evidence);
 
 }  // namespace dubsar

@@ -72,7 +72,7 @@ struct AxisView {
   float longest = 0.0F;
 };
 
-std::optional<CurveTrial> trial_by(const Evidence& evidence, const AxisView& view) {
+std::optional<CurveTrial> trial_by(const EvenEvidence& evidence, const AxisView& view) {
   if (evidence.clay.count < kLeastSure || evidence.air.count < kLeastSure) return std::nullopt;
   CurveTrial trial;
   trial.axis = view.axis;
@@ -103,7 +103,7 @@ Result<std::optional<CurveTrial>> try_axis(const Volume<float>& volume, const Su
       view.longest = std::max(view.longest, *std::max_element(p.row(k), p.row(k) + p.row_floats()));
   }
   if (!(view.longest > 1.0F)) return std::nullopt;
-  Evidence evidence;
+  EvenEvidence evidence;
   LaneSinogram power = rays.sinogram();
   for (std::size_t group = 0; group < groups; ++group) {
     const LaneSinogram& p = view.recorded[group];
@@ -159,7 +159,7 @@ Result<std::optional<CurveTrial>> try_stray(const SureMaterials& sure, AxisView&
     if (here.p > largest.p) largest.p = here.p, largest.stray = here.stray;
   }
   if (!(largest.x > 0.0F)) return std::nullopt;
-  Evidence evidence;
+  EvenEvidence evidence;
   LaneSinogram power = rays.sinogram();
   for (std::size_t group = 0; group < view.groups(); ++group) {
     for (std::size_t term = 0; term < RayCurve::kStrayTerms; ++term) {
