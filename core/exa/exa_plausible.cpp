@@ -13,18 +13,18 @@ namespace {
 /// Grid steps that smoothing and quantising move a vertex from its crossings: phantoms have 2 at most.
 constexpr float kMostMove = 8.0F;
 /// Of a patch outside of the grid: relaxed patches stay within their rims.
-constexpr float kMargin = 16.0F;
+constexpr float kPlausibleMargin = 16.0F;
 /// Of a unit vector that was rounded to floats, or to the steps of an octahedron.
 constexpr float kUnitError = 0.01F;
 /// A curve of less than a thousandth of a grid step.
 constexpr float kMostCurvature = 1000.0F;
 /// Millimetres: atoms, and more than a room.
-constexpr double kLeastVoxel = 1e-7, kMostVoxel = 1e4, kFarthest = 1e7;
+constexpr double kLeastVoxel = 1e-7, kMostVoxel = 1e4, kFarthestOrigin = 1e7;
 
 Result<void> check_places(const SurfaceModel& model, const QuadMesh& base) {
   const Dims& d = model.samples.dims;
-  const glm::vec3 low(-kMargin),
-      high(glm::vec3(static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)) + kMargin);
+  const glm::vec3 low(-kPlausibleMargin),
+      high(glm::vec3(static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)) + kPlausibleMargin);
   const auto inside = [&](const glm::vec3& p) {
     return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
   };
@@ -62,7 +62,7 @@ Result<void> check_frame(const GridFrame& frame) {
   for (int a = 0; a < 3; ++a) {
     const double voxel = frame.input_voxel.known() ? frame.input_voxel.mm[a] : 1.0;
     if (!(voxel >= kLeastVoxel && voxel <= kMostVoxel) || !(frame.scale[a] > 0.0 && frame.scale[a] <= kMostVoxel) ||
-        !(std::abs(frame.origin_vox[a] * voxel) <= kFarthest))
+        !(std::abs(frame.origin_vox[a] * voxel) <= kFarthestOrigin))
       return fail(ErrorKind::kBadData, "exa: a voxel of {:g} mm, {:g} of it a grid step, from voxel {:g} on is no scan",
                   voxel, frame.scale[a], frame.origin_vox[a]);
   }

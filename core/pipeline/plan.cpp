@@ -18,7 +18,7 @@ constexpr double kVerticesPerArea = 10.0;
 /// Points of the bricks near the surface for each vertex; what filtering one costs, since passes see beyond bricks.
 constexpr double kBandPoints = 14.0, kBandEffort = 1.8;
 /// Slices that are filtered in whole at the scan's resolution, and voxels of more than 36 (refine_stage.cpp).
-constexpr double kSampleSlices = 96.0, kLeastSlices = 36.0, kMostSampled = 150e6;
+constexpr double kPlanSampleSlices = 96.0, kPlanLeastSlices = 36.0, kPlanMostSampled = 150e6;
 /// Triangles of patches for each vertex: .03 to .06, and .15 where 40 % of the tablet is glued.
 constexpr double kUsualPatches = 0.05;
 /// Whatever the scan and the surface: slabs, the file's caches; for each thread counts of values and rows of filters.
@@ -28,12 +28,12 @@ constexpr double kPage = 20e6;  ///< of a grid that lies on the disk
 double scan_points(const RunShape& r) { return static_cast<double>(r.scan.count()); }
 double half_points(const RunShape& r) { return static_cast<double>(grid_of(r.scan, true).count()); }
 double grid_points(const RunShape& r) { return r.half ? half_points(r) : scan_points(r); }
-double signs(const RunShape& r) { return grid_points(r) / 8.0; }
-double patches(const RunShape& r) { return r.patches >= 0.0 ? r.patches : kUsualPatches * r.vertices; }
+double sign_bytes(const RunShape& r) { return grid_points(r) / 8.0; }
+double patch_count(const RunShape& r) { return r.patches >= 0.0 ? r.patches : kUsualPatches * r.vertices; }
 double band_points(const RunShape& r) { return std::min(grid_points(r), kBandPoints * r.vertices); }
 double sampled(const RunShape& r) {
   const auto slice = static_cast<double>(r.scan.slice());
-  return std::min({kSampleSlices * slice, std::max(kMostSampled, kLeastSlices * slice), scan_points(r)});
+  return std::min({kPlanSampleSlices * slice, std::max(kPlanMostSampled, kPlanLeastSlices * slice), scan_points(r)});
 }
 double stored(double points, GridPlace place) {
   return place == GridPlace::kMemory ? 4.0 * points : std::min(4.0 * points, kPage);
@@ -72,11 +72,11 @@ double seconds_to_find(const RunShape& r) {
   return scan_points(r) * r.read_s + 4e-9 * (half_points(r) + r.passes * filtered + band_points(r));
 }
 
-double bytes_to_separate(const RunShape& r) { return 5.5 * signs(r) + 165.0 * r.vertices; }
+double bytes_to_separate(const RunShape& r) { return 5.5 * sign_bytes(r) + 165.0 * r.vertices; }
 
 /// Along the patches, as deep as wedges are: on the halved grid a patch triangle stands for more of it.
 double bytes_to_trace(const RunShape& r) {
-  return 115.0 * r.vertices + (!r.contact ? 0.0 : r.half ? 7700.0 : 4400.0) * patches(r);
+  return 115.0 * r.vertices + (!r.contact ? 0.0 : r.half ? 7700.0 : 4400.0) * patch_count(r);
 }
 double seconds_to_trace(const RunShape& r) { return (r.contact ? 4.4e-6 : 0.4e-6) * r.vertices; }
 
@@ -131,10 +131,10 @@ double bytes_of(Value value, const RunShape& run) {
     case Value::kScan: return run.layer_bytes;
     case Value::kHalf: return stored(half_points(run), run.half_place);
     case Value::kStraight: return run.straight ? stored(grid_points(run), run.straight->place) : 0.0;
-    case Value::kSamples: return 1.1 * signs(run) + 4.0 * run.vertices;
+    case Value::kSamples: return 1.1 * sign_bytes(run) + 4.0 * run.vertices;
     case Value::kMesh: return 44.0 * run.vertices;
     case Value::kAttributes: return 24.0 * run.vertices;
-    case Value::kParts: return 6.0 * run.vertices + 200.0 * patches(run);
+    case Value::kParts: return 6.0 * run.vertices + 200.0 * patch_count(run);
     case Value::kChecked: return 41.0 * run.vertices;
   }
   return 0.0;

@@ -9,7 +9,7 @@
 
 namespace dubsar {
 namespace {
-constexpr std::uint64_t kMostPerByte =
+constexpr std::uint64_t kMostItemsPerByte =
     8;  ///< rims, triangles and vertices of a byte; an encoder adds zeros where they are fewer
 
 /// A number of 32 bits, 7 to a byte, lowest first, the top bit of a byte says that more follow.
@@ -131,7 +131,7 @@ class PatchCode {
   /// False: counts that the bytes cannot hold, or no patches.
   bool code(std::vector<FillPatch>& patches) {
     const std::uint32_t count = counts_.code(coder_, static_cast<std::uint32_t>(patches.size()));
-    if (count > most_ / kMostPerByte) return false;
+    if (count > most_ / kMostItemsPerByte) return false;
     patches.resize(count);
     for (FillPatch& patch : patches) {
       patch.partition = label(patch.partition);
@@ -344,7 +344,7 @@ std::vector<std::string> encode_patches(const std::vector<FillPatch>& patches, c
   BitSink sink{out};
   PatchCode(sink, around, ~std::uint64_t{0}).code(copy);
   std::string bytes = out.take();
-  bytes.resize(std::max<std::size_t>(bytes.size(), items_of(patches) / kMostPerByte), '\0');
+  bytes.resize(std::max<std::size_t>(bytes.size(), items_of(patches) / kMostItemsPerByte), '\0');
   return {std::move(bytes)};
 }
 
@@ -355,7 +355,7 @@ Result<std::vector<FillPatch>> decode_patches(std::span<const std::string_view> 
   RangeDecoder in(chunks[0]);
   BitSource source{in};
   std::vector<FillPatch> patches;
-  if (!PatchCode(source, around, kMostPerByte * (chunks[0].size() + 8)).code(patches))
+  if (!PatchCode(source, around, kMostItemsPerByte * (chunks[0].size() + 8)).code(patches))
     return fail(ErrorKind::kBadData, "exa: the fill patches are more than {} bytes can hold, or have no border",
                 chunks[0].size());
   DUBSAR_TRY(check_patches(patches, around.mesh.vertex_count()));
