@@ -28,10 +28,15 @@ class PhantomBuilder {
     Side side;
     float top, half_length;  ///< voxels along up and right
     int lines;
-    double fill;  ///< share of lines that are written
+    double fill;         ///< share of lines that are written
+    int first_line = 1;  ///< number of its first line on the side
   };
   void write_block(Owner owner, const TextBlock& block);
-  void press(Owner owner, Side side, float right, float up, const Stroke& stroke, int sign, float sign_height);
+  struct PressedAs {
+    int sign, line;
+    float sign_height;
+  };
+  void press(Owner owner, Side side, float right, float up, const Stroke& stroke, const PressedAs& as);
   void measure_wedges();
 
   float mm(double length) const { return static_cast<float>(length) * p_.place_.voxels_per_mm; }

@@ -12,6 +12,7 @@
 #include "core/phantom/options.h"
 #include "core/phantom/phantom_parts.h"
 #include "core/phantom/side.h"
+#include "core/phantom/sign_list.h"
 
 namespace dubsar::phantom {
 
@@ -41,6 +42,13 @@ inline constexpr EnumName<WedgeCase> kWedgeCases[] = {{WedgeCase::kFree, "free"}
                                                       {WedgeCase::kFilled, "filled"}};
 static_assert(names_all(kWedgeCases, static_cast<std::size_t>(WedgeCase::kFilled) + 1));
 
+/// Where a wedge begins and ends, on the undisturbed surface.
+struct WedgePlace {
+  glm::dvec3 head{0.0};   ///< middle of the head's straight edge
+  glm::dvec3 end{0.0};    ///< where the tail, or a Winkelhaken's point, comes back to that surface
+  glm::dvec3 right{0.0};  ///< unit, along the lines of its side
+};
+
 /// One wedge, in input voxel coordinates.
 struct Wedge {
   glm::dvec3 position;  ///< on the undisturbed surface, above the deepest point
@@ -49,11 +57,15 @@ struct Wedge {
   double depth = 0.0;   ///< voxels from `position` against `outward` to the clay, after all neighbours were written
   double length = 0.0;  ///< of the tail, voxels; 0: Winkelhaken
   double head_half_width = 0.0;
+  WedgePlace place;
+  StrokeKind kind = StrokeKind::kVertical;
   Side side = Side::kObverse;
   Owner owner = Owner::kTablet;
   std::int32_t sign = 0;               ///< running number of the sign it belongs to
+  std::int32_t line = 0;               ///< of its block of text, from 1 at the top; blocks of a side count on
   bool open = true;                    ///< air from `position` to the deepest point
   WedgeCase state = WedgeCase::kFree;  ///< of the tablet's; those of the envelope's outside are free
+  bool has_air() const noexcept { return state != WedgeCase::kFilled; }
 };
 
 /// Fields at a point, in voxels, negative inside; metric to first order after division by their gradients near their

@@ -26,18 +26,23 @@ Sign sign(int width, std::initializer_list<Mark> marks) {
     switch (mark.kind) {
       case 'H':
         s.tail_x = 1, s.tail_y = 0, s.head = 0.15f;
+        s.kind = StrokeKind::kHorizontal;
         break;
       case 'V':
         s.tail_x = 0, s.tail_y = -1, s.head = 0.16f;
+        s.kind = StrokeKind::kVertical;
         break;
       case 'D':
         s.tail_x = diagonal, s.tail_y = -diagonal, s.head = 0.145f;
+        s.kind = StrokeKind::kObliqueDown;
         break;
       case 'U':
         s.tail_x = diagonal, s.tail_y = diagonal, s.head = 0.145f;
+        s.kind = StrokeKind::kObliqueUp;
         break;
       default:
         s.tail_x = -1, s.tail_y = 0, s.length = 0, s.head = 0.18f;
+        s.kind = StrokeKind::kWinkelhaken;
         break;
     }
     result.strokes.push_back(s);

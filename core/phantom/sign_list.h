@@ -1,11 +1,23 @@
 #pragma once
 // Cuneiform signs as groups of wedges, and lines of them.
 
+#include <cstdint>
 #include <vector>
 
+#include "core/base/text/enum_names.h"
 #include "core/phantom/random.h"
 
 namespace dubsar::phantom {
+
+/// The five kinds of wedges, as the sign list names them.
+enum class StrokeKind : std::uint8_t { kHorizontal, kVertical, kObliqueDown, kObliqueUp, kWinkelhaken };
+
+inline constexpr EnumName<StrokeKind> kStrokeKinds[] = {{StrokeKind::kHorizontal, "horizontal"},
+                                                        {StrokeKind::kVertical, "vertical"},
+                                                        {StrokeKind::kObliqueDown, "oblique-down"},
+                                                        {StrokeKind::kObliqueUp, "oblique-up"},
+                                                        {StrokeKind::kWinkelhaken, "winkelhaken"}};
+static_assert(names_all(kStrokeKinds, static_cast<std::size_t>(StrokeKind::kWinkelhaken) + 1));
 
 /// One wedge of a sign, in units of the sign height: x to the right, y up, (0, 0) at the left end of the base line.
 struct Stroke {
@@ -13,6 +25,7 @@ struct Stroke {
   float tail_x = 1, tail_y = 0;  ///< unit direction of the tail
   float length = 0;              ///< of the tail; 0: Winkelhaken
   float head = 0.15f;            ///< half width of the head
+  StrokeKind kind = StrokeKind::kVertical;
 };
 
 struct Sign {

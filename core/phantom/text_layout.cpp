@@ -39,13 +39,15 @@ void PhantomBuilder::write_envelope() {
     body.bands[static_cast<std::size_t>(side)].push_back(
         {bottom, static_cast<float>(random.uniform(0.0, static_cast<double>(SealRelief::kTurnMm)))});
   };
+  std::array<int, kSides> lines_before{};
   const auto text = [&](Side side, float bottom, float top) {
     const SideFrame& frame = kSideFrames[static_cast<std::size_t>(side)];
     const int lines = static_cast<int>(std::floor((top - bottom) / line_pitch_));
     const float slack = 0.5f * (top - bottom - static_cast<float>(lines) * line_pitch_);
     if (lines > 0)
-      write_block(Owner::kEnvelope,
-                  {side, top - slack, body.half[static_cast<std::size_t>(frame.right.axis)] - inset, lines, 1.0});
+      write_block(Owner::kEnvelope, {side, top - slack, body.half[static_cast<std::size_t>(frame.right.axis)] - inset,
+                                     lines, 1.0, lines_before[static_cast<std::size_t>(side)] + 1});
+    lines_before[static_cast<std::size_t>(side)] += std::max(0, lines);
   };
   const float margin = 0.8f * p_.place_.voxels_per_mm;
   const float reach = body.half[2] - inset;
@@ -76,14 +78,14 @@ void PhantomBuilder::write_block(Owner owner, const TextBlock& block) {
     for (const PlacedSign& sign : write_line(length / sign_height, random)) {
       for (const Stroke& stroke : sign.strokes)
         press(owner, block.side, stroke.x * sign_height - block.half_length, base + stroke.y * sign_height, stroke,
-              signs_, sign_height);
+              {signs_, block.first_line + line, sign_height});
       ++signs_;
     }
   }
 }
 
-void PhantomBuilder::press(Owner owner, Side side, float right, float up, const Stroke& stroke, int sign,
-                           float sign_height) {
+void PhantomBuilder::press(Owner owner, Side side, float right, float up, const Stroke& stroke, const PressedAs& as) {
+  const float sign_height = as.sign_height;
   ClayBody& body = owner == Owner::kTablet ? p_.tablet_.body : p_.outer_.body;
   const SideFrame& frame = kSideFrames[static_cast<std::size_t>(side)];
   Point point;
@@ -111,13 +113,17 @@ void PhantomBuilder::press(Owner owner, Side side, float right, float up, const 
   relief = std::max(relief, 1.1f * size.depth + 1.0f);
 
   // Of the undisturbed surface, above the deepest place.
-  Point above;
-  above.p = point.p + along * impressions.back().field.deepest_along();
-  Dual there = body.smooth(above);
-  for (int i = 0; i < 4; ++i) {
-    above.p = above.p - there.g * (there.v / dot(there.g, there.g));
-    there = body.smooth(above);
-  }
+  const auto on_surface = [&](float along_it) {
+    Point at;
+    at.p = point.p + along * along_it;
+    Dual there = body.smooth(at);
+    for (int i = 0; i < 4; ++i) {
+      at.p = at.p - there.g * (there.v / dot(there.g, there.g));
+      there = body.smooth(at);
+    }
+    return std::pair{at, there};
+  };
+  const auto [above, there] = on_surface(impressions.back().field.deepest_along());
 
   const Float4 outward = unit(there.g);
 
@@ -130,7 +136,14 @@ void PhantomBuilder::press(Owner owner, Side side, float right, float up, const 
   wedge.head_half_width = static_cast<double>(size.head_half_width);
   wedge.side = side;
   wedge.owner = owner;
-  wedge.sign = sign;
+  wedge.place.head = p_.place_.grid_point(on_surface(-size.head_back).first.p);
+  wedge.place.end = p_.place_.grid_point(on_surface(std::max(size.head_front, size.tail_length)).first.p);
+  Float4 of_lines{};
+  of_lines[frame.right.axis] = frame.right.sign;
+  wedge.place.right = p_.place_.grid_vector(unit(of_lines - outward * dot(of_lines, outward)));
+  wedge.kind = stroke.kind;
+  wedge.sign = as.sign;
+  wedge.line = as.line;
   p_.wedges_.push_back(wedge);
   p_.edges_.lip_width = 0.5f * size.head_half_width;
   p_.edges_.lip_height = 0.06f * size.depth;

@@ -123,15 +123,42 @@ Result<ScannerReport> write_scanned(const std::filesystem::path& path, const Pha
 }
 
 Result<void> write_wedges(Hdf5Writer& file, const Phantom& phantom) {
-  const std::vector<std::string> columns{"x",      "y",      "z",      "out_x", "out_y",  "out_z",
-                                         "tail_x", "tail_y", "tail_z", "depth", "length", "head_half_width",
-                                         "side",   "owner",  "sign",   "open",  "case"};
+  const std::vector<std::string> columns{"x",       "y",       "z",      "out_x", "out_y",  "out_z",
+                                         "tail_x",  "tail_y",  "tail_z", "depth", "length", "head_half_width",
+                                         "side",    "owner",   "sign",   "open",  "case",   "head_x",
+                                         "head_y",  "head_z",  "end_x",  "end_y", "end_z",  "right_x",
+                                         "right_y", "right_z", "kind",   "line",  "air"};
   std::vector<double> rows;
   for (const Wedge& w : phantom.wedges())
-    rows.insert(rows.end(), {w.position.x, w.position.y, w.position.z, w.outward.x, w.outward.y, w.outward.z, w.tail.x,
-                             w.tail.y, w.tail.z, w.depth, w.length, w.head_half_width, static_cast<double>(w.side),
-                             static_cast<double>(w.owner), static_cast<double>(w.sign), w.open ? 1.0 : 0.0,
-                             static_cast<double>(w.state)});
+    rows.insert(rows.end(), {w.position.x,
+                             w.position.y,
+                             w.position.z,
+                             w.outward.x,
+                             w.outward.y,
+                             w.outward.z,
+                             w.tail.x,
+                             w.tail.y,
+                             w.tail.z,
+                             w.depth,
+                             w.length,
+                             w.head_half_width,
+                             static_cast<double>(w.side),
+                             static_cast<double>(w.owner),
+                             static_cast<double>(w.sign),
+                             w.open ? 1.0 : 0.0,
+                             static_cast<double>(w.state),
+                             w.place.head.x,
+                             w.place.head.y,
+                             w.place.head.z,
+                             w.place.end.x,
+                             w.place.end.y,
+                             w.place.end.z,
+                             w.place.right.x,
+                             w.place.right.y,
+                             w.place.right.z,
+                             static_cast<double>(w.kind),
+                             static_cast<double>(w.line),
+                             w.has_air() ? 1.0 : 0.0});
   return file.write_table("/truth/wedges", columns, rows);
 }
 
