@@ -1,0 +1,325 @@
+#include "core/script/explain_relief.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include "core/base/system/parallel.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kStartDirections = 24;
+constexpr std::size_t kMostWays = 4;
+constexpr double kWaysApart = 0.6;        // radians between two ways that a place is explained
+constexpr double kClearMargin = 6e-4;     // a tenth of what a usual wedge explains
+constexpr double kSameTurn = 0.35;        // radians: the same way
+constexpr double kNeighbourWidths = 4.5;  // farther imprints explain nothing of a window
+constexpr FitOptions kAlone{0.5, 12};     // a neighbour only digs deeper
+constexpr FitOptions kTogether{1.0, 8};
+
+double angle_apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
+
+double level_at(const WedgeSite& site, double x, double y) {
+  double best = 1e30, level = 0.0;
+  for (std::size_t i = 0; i < site.samples.size(); ++i) {
+    const double dx = static_cast<double>(site.samples.x[i]) - x, dy = static_cast<double>(site.samples.y[i]) - y;
+    if (dx * dx + dy * dy < best) {
+      best = dx * dx + dy * dy;
+      level = static_cast<double>(site.samples.level[i]);
+    }
+  }
+  return level;
+}
+
+}  // namespace
+
+ReliefExplanation::ReliefExplanation(const PatchCells& cells, const WedgeScale& scale,
+                                     const std::vector<DeepPlace>& places)
+    : cells_(&cells), scale_(scale), sites_(places.size()), fits_(places.size()) {
+  parallel_for(static_cast<std::int64_t>(places.size()), 4, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    sites_[k] = wedge_site(cells, scale, places[k]);
+    fit_alone(k);
+  });
+  find_neighbours();
+}
+
+void ReliefExplanation::fit_alone(std::size_t k) {
+  const WedgeSite& site = sites_[k];
+  Fit& fit = fits_[k];
+  if (site.samples.size() < 100) return;
+  const UsualImprint usual = scale_.usual();
+  std::vector<ImprintStart> starts = imprint_starts(site.coarse, usual, site.x, site.y, kStartDirections, kAlone);
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const ImprintStart& a, const ImprintStart& b) { return a.energy < b.energy; });
+  const auto differs = [&](double angle) {
+    return std::all_of(fit.ways.begin(), fit.ways.end(), [&](const ImprintStart& way) {
+      return angle_apart(way.imprint.p[Imprint::kAngle], angle) > kWaysApart;
+    });
+  };
+  for (const ImprintStart& start : starts) {
+    if (fit.ways.size() == kMostWays) break;
+    if (differs(start.imprint.p[Imprint::kAngle])) fit.ways.push_back(start);
+  }
+  for (ImprintStart& way : fit.ways) way.energy = fit_imprint(way.imprint, site.samples, usual, kAlone);
+  std::stable_sort(fit.ways.begin(), fit.ways.end(),
+                   [](const ImprintStart& a, const ImprintStart& b) { return a.energy < b.energy; });
+  fit.imprint = fit.ways.front().imprint;
+  fit.gain = empty_energy(site.samples, kAlone) - fit.ways.front().energy;
+}
+
+void ReliefExplanation::find_neighbours() {
+  near_.resize(sites_.size());
+  const double reach = kNeighbourWidths * scale_.width_mm;
+  std::map<std::array<std::int64_t, 3>, std::vector<std::uint32_t>> cubes;
+  const auto cube_of = [&](const glm::dvec3& p) {
+    std::array<std::int64_t, 3> c{};
+    for (int a = 0; a < 3; ++a) c[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(std::floor(p[a] / reach));
+    return c;
+  };
+  for (std::size_t k = 0; k < sites_.size(); ++k)
+    cubes[cube_of(sites_[k].origin)].push_back(static_cast<std::uint32_t>(k));
+  for (std::size_t k = 0; k < sites_.size(); ++k) {
+    const auto c = cube_of(sites_[k].origin);
+    for (std::int64_t z = -1; z <= 1; ++z)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t x = -1; x <= 1; ++x) {
+          const auto cube = cubes.find({c[0] + x, c[1] + y, c[2] + z});
+          if (cube == cubes.end()) continue;
+          for (const std::uint32_t j : cube->second)
+            if (j != k && glm::distance(sites_[j].origin, sites_[k].origin) < reach &&
+                glm::dot(sites_[j].out, sites_[k].out) > 0.0)
+              near_[k].push_back(j);
+        }
+    std::sort(near_[k].begin(), near_[k].end());
+  }
+}
+
+PlacedImprint ReliefExplanation::placed_at(std::size_t k) const {
+  const WedgeSite& site = sites_[k];
+  const Imprint& i = fits_[k].imprint;
+  PlacedImprint out;
+  const double x = i.p[Imprint::kX], y = i.p[Imprint::kY], angle = i.p[Imprint::kAngle];
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto place = [&](double along) {
+    const double u = x + along * c, v = y + along * s;
+    return site.origin + scale_.width_mm * (site.right * u + site.up * v + site.out * level_at(site, u, v));
+  };
+  out.foot = place(0.0);
+  out.head = place(-i.back());
+  out.end = place(i.reach());
+  out.normal = site.out;
+  out.along = c * site.right + s * site.up;
+  out.imprint = i;
+  out.site = k;
+  out.gain = fits_[k].gain;
+  out.margin = fits_[k].margin;
+  out.thirds = fits_[k].thirds;
+  out.seen = site.seen;
+  return out;
+}
+
+void ReliefExplanation::look_beside(std::size_t k, DepthSamples& samples) const {
+  const WedgeSite& site = sites_[k];
+  std::fill(samples.others.begin(), samples.others.end(), 0.0f);
+  for (const std::uint32_t j : near_[k]) {
+    if (!fits_[j].active) continue;
+    const PlacedImprint other = placed_at(j);
+    const glm::dvec3 off = (site.origin - other.foot) / scale_.width_mm;
+    const auto along = [&](const glm::dvec3& axis) {
+      return std::array<float, 4>{
+          static_cast<float>(glm::dot(off, axis)), static_cast<float>(glm::dot(site.right, axis)),
+          static_cast<float>(glm::dot(site.up, axis)), static_cast<float>(glm::dot(site.out, axis))};
+    };
+    explain_by_other(other.imprint,
+                     {along(other.along), along(glm::cross(other.normal, other.along)), along(other.normal)}, samples);
+  }
+}
+
+double ReliefExplanation::gain_beside(std::size_t k, const Imprint& imprint, DepthSamples& samples) const {
+  look_beside(k, samples);
+  return empty_energy(samples, kTogether) - imprint_energy(imprint, samples, scale_.usual(), kTogether);
+}
+
+double ReliefExplanation::doubt(const WedgeSite& site, const Imprint& imprint) const {
+  // Half of what tells a Winkelhaken from itself turned by a third, on phantoms; a hundredth of what a tail does.
+  constexpr double kNat = 4e-5;
+  if (!surprise_) return 0.0;
+  const double angle = imprint.p[Imprint::kAngle];
+  return kNat * surprise_(std::cos(angle) * site.right + std::sin(angle) * site.up, site.out, imprint);
+}
+
+void ReliefExplanation::fit_beside(std::size_t k, Fit& out) const {
+  if (out.ways.empty() || (!out.active && out.hopeless)) return;
+  DepthSamples samples = sites_[k].samples;
+  look_beside(k, samples);
+  std::vector<ImprintStart> ways, plain;  // with what is surprising about them, and without
+  const auto add = [&](Imprint start) {
+    ImprintStart way{start, 0.0};
+    way.energy = fit_imprint(way.imprint, samples, scale_.usual(), kTogether);
+    plain.push_back(way);
+    way.energy += doubt(sites_[k], way.imprint);
+    ways.push_back(way);
+  };
+  add(out.imprint);
+  const bool clear = out.active && out.margin > kClearMargin;  // nothing else came near it before
+  for (const ImprintStart& way : out.ways)
+    if (!clear && angle_apart(way.imprint.p[Imprint::kAngle], out.imprint.p[Imprint::kAngle]) > kWaysApart)
+      add(way.imprint);
+  for (const double turn : {-1.0, 1.0}) {
+    if (clear) break;
+    Imprint turned = ways.front().imprint;
+    turned.p[Imprint::kAngle] += turn * 2.0 * std::numbers::pi / 3.0;
+    add(turned);
+  }
+  // With a tail or without one, whichever it had not.
+  Imprint other = ways.front().imprint;
+  other.tailed = !other.tailed;
+  if (other.tailed) other.p[Imprint::kTail] = std::max(std::log(1.6), other.p[Imprint::kFront] + 0.3);
+  add(other);
+  std::stable_sort(ways.begin(), ways.end(),
+                   [](const ImprintStart& a, const ImprintStart& b) { return a.energy < b.energy; });
+  out.imprint = ways.front().imprint;
+  out.gain = empty_energy(samples, kTogether) - ways.front().energy;
+  if (clear) return;
+  out.margin = out.gain;
+  const double angle = out.imprint.p[Imprint::kAngle];
+  const auto best_near = [&](double at) {
+    double best = 1e30;
+    for (const ImprintStart& way : plain)
+      if (angle_apart(way.imprint.p[Imprint::kAngle], at) < kSameTurn) best = std::min(best, way.energy);
+    return best;
+  };
+  for (const std::size_t t : {std::size_t{0}, std::size_t{1}})
+    out.thirds[t] =
+        std::min(kNoTurn, best_near(angle + (t == 0 ? 1.0 : -1.0) * 2.0 * std::numbers::pi / 3.0) - best_near(angle));
+  for (const ImprintStart& way : ways)
+    if (angle_apart(way.imprint.p[Imprint::kAngle], out.imprint.p[Imprint::kAngle]) > kWaysApart)
+      out.margin = std::min(out.margin, way.energy - ways.front().energy);
+}
+
+ReliefExplanation::Second ReliefExplanation::second_in(std::size_t k) const {
+  constexpr double kAside = 0.35;  // widths from one deepest place to the other
+  Second out;
+  DepthSamples samples = sites_[k].samples;
+  look_beside(k, samples);
+  const std::vector<float> outside = samples.others;
+  const UsualImprint usual = scale_.usual();
+  out.first = fits_[k].imprint;
+  const double alone = imprint_energy(out.first, samples, usual, kTogether);
+  const auto beside = [&](const Imprint& imprint, DepthSamples& to) {
+    std::vector<float> model;
+    imprint_depths(imprint, to, model);
+    for (std::size_t i = 0; i < model.size(); ++i) to.others[i] = std::max(outside[i], model[i]);
+  };
+  beside(out.first, samples);
+  DepthSamples coarse = sites_[k].coarse;
+  for (std::size_t i = 0, j = 0; i < coarse.size(); ++i) {
+    while (samples.x[j] != coarse.x[i] || samples.y[j] != coarse.y[i]) ++j;
+    coarse.others[i] = samples.others[j];
+  }
+  ImprintStart best;
+  best.energy = 1e30;
+  const double x = out.first.p[Imprint::kX], y = out.first.p[Imprint::kY];
+  for (int place = 0; place < 9; ++place) {
+    const double angle = std::numbers::pi * place / 4.0, far = place == 8 ? 0.0 : kAside;
+    for (const ImprintStart& start : imprint_starts(coarse, usual, x + far * std::cos(angle), y + far * std::sin(angle),
+                                                    kStartDirections / 2, kTogether))
+      if (start.energy < best.energy) best = start;
+  }
+  out.second = best.imprint;
+  double energy = 0.0;
+  for (int turn = 0; turn < 3; ++turn) {
+    beside(out.first, samples);
+    energy = fit_imprint(out.second, samples, usual, kTogether);
+    beside(out.second, samples);
+    energy = fit_imprint(out.first, samples, usual, kTogether);
+  }
+  out.gain = alone - energy;
+  return out;
+}
+
+void ReliefExplanation::split(double cost) {
+  std::vector<std::size_t> active;
+  for (std::size_t k = 0; k < fits_.size(); ++k)
+    if (fits_[k].active) active.push_back(k);
+  std::vector<Second> seconds(active.size());
+  parallel_for(static_cast<std::int64_t>(active.size()), 2, [&](std::int64_t i) {
+    seconds[static_cast<std::size_t>(i)] = second_in(active[static_cast<std::size_t>(i)]);
+  });
+  std::vector<std::size_t> order(active.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return seconds[a].gain > seconds[b].gain; });
+  for (const std::size_t i : order) {
+    if (seconds[i].gain < cost) break;
+    const std::size_t k = active[i];
+    // Another site may have explained the same since.
+    DepthSamples samples = sites_[k].samples;
+    look_beside(k, samples);
+    const double alone = imprint_energy(fits_[k].imprint, samples, scale_.usual(), kTogether);
+    std::vector<float> model;
+    imprint_depths(seconds[i].first, samples, model);
+    for (std::size_t s = 0; s < model.size(); ++s) samples.others[s] = std::max(samples.others[s], model[s]);
+    const double gain = alone - imprint_energy(seconds[i].second, samples, scale_.usual(), kTogether);
+    if (gain < cost) continue;
+    fits_[k].imprint = seconds[i].first;
+    Fit fresh;
+    fresh.imprint = seconds[i].second;
+    fresh.ways = {{seconds[i].second, 0.0}};
+    fresh.active = true;
+    fresh.gain = gain;
+    const auto made = static_cast<std::uint32_t>(sites_.size());
+    sites_.push_back(WedgeSite(sites_[k]));
+    fits_.push_back(fresh);
+    near_.push_back(near_[k]);
+    near_.back().push_back(static_cast<std::uint32_t>(k));
+    for (const std::uint32_t j : near_.back()) near_[j].push_back(made);
+  }
+}
+
+void ReliefExplanation::explain(int rounds, double cost) {
+  std::vector<std::size_t> order(sites_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto by_gain = [&](bool most_first) {
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return most_first ? fits_[a].gain > fits_[b].gain : fits_[a].gain < fits_[b].gain;
+    });
+  };
+  const auto take_in = [&] {
+    by_gain(true);
+    for (const std::size_t k : order) {
+      if (fits_[k].active || fits_[k].ways.empty() || fits_[k].gain < cost) continue;
+      DepthSamples samples = sites_[k].samples;
+      const double gain = gain_beside(k, fits_[k].imprint, samples);
+      fits_[k].active = gain > cost;
+      fits_[k].gain = gain;
+    }
+  };
+  take_in();
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Fit> next = fits_;
+    parallel_for(static_cast<std::int64_t>(sites_.size()), 2,
+                 [&](std::int64_t i) { fit_beside(static_cast<std::size_t>(i), next[static_cast<std::size_t>(i)]); });
+    fits_ = std::move(next);
+    for (Fit& fit : fits_) fit.hopeless = !fit.active && fit.gain < 0.7 * cost;
+    by_gain(false);
+    for (const std::size_t k : order) {
+      if (!fits_[k].active) continue;
+      DepthSamples samples = sites_[k].samples;
+      fits_[k].gain = gain_beside(k, fits_[k].imprint, samples);
+      fits_[k].active = fits_[k].gain > cost;
+    }
+    if (round + 1 < rounds) {
+      take_in();
+      split(cost);
+      for (std::size_t k = order.size(); k < sites_.size(); ++k) order.push_back(k);
+    }
+  }
+}
+
+}  // namespace dubsar

@@ -1,0 +1,82 @@
+#pragma once
+// The relief of a surface explained by imprints: as few of them as it takes, together, as neighbours dig into each
+// other.
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "core/script/wedge_sites.h"
+
+namespace dubsar {
+
+inline constexpr double kNoTurn = 1.0;
+
+/// An imprint at its place, mm.
+struct PlacedImprint {
+  glm::dvec3 foot{0.0}, normal{0, 0, 1}, along{1, 0, 0};  ///< foot: on the writing surface, above T
+  Imprint imprint;                                        ///< in units of the usual width
+  glm::dvec3 head{0.0}, end{0.0};  ///< middle of the head's edge and end of the tail, on the writing surface
+  double depth = 0.0;              ///< of the clay below the writing surface, usual widths
+  std::size_t site = 0;
+  double gain = 0.0;    ///< what it explains that nothing else does
+  double margin = 0.0;  ///< by how much the best other direction explains less
+  /// What it explains less turned by a third, counterclockwise and clockwise; kNoTurn where that fits nowhere.
+  std::array<double, 2> thirds{};
+  double misfit = 0.0;   ///< root of the mean square of what is left in its footprint, of its depth
+  double seen = 1.0;     ///< of its window
+  double covered = 0.0;  ///< share of its footprint that others explain
+};
+
+class ReliefExplanation {
+ public:
+  /// Fits each place alone, to begin with. `cells` must outlive it. Cost: some ms a place, all threads.
+  ReliefExplanation(const PatchCells& cells, const WedgeScale& scale, const std::vector<DeepPlace>& places);
+
+  /// Begins with what explains most, and goes on until nothing gains `cost` any more: each round fits all imprints
+  /// anew beside the others, drops those that gain less, turns those that explain more otherwise, and takes in others.
+  void explain(int rounds, double cost);
+
+  /// From the next round on: how surprising a direction is at a place, in nats. What fits as well two ways is told by
+  /// it, what has a tail hardly is. Called by several threads at once.
+  using Surprise = std::function<double(const glm::dvec3& along, const glm::dvec3& normal, const Imprint& imprint)>;
+  void prefer(Surprise surprise) { surprise_ = std::move(surprise); }
+
+  std::vector<PlacedImprint> placed() const;
+
+ private:
+  struct Fit {
+    std::vector<ImprintStart> ways;  ///< by rising energy
+    Imprint imprint;
+    bool active = false;
+    bool hopeless = false;  ///< explained too little beside the others to be tried again
+    double gain = 0.0, margin = 0.0;
+    std::array<double, 2> thirds{kNoTurn, kNoTurn};
+  };
+  void fit_alone(std::size_t k);
+  void find_neighbours();
+  void look_beside(std::size_t k, DepthSamples& samples) const;
+  void fit_beside(std::size_t k, Fit& out) const;
+  /// Another imprint in the same window, and how the first one looks beside it; nothing where that gains too little.
+  struct Second {
+    Imprint first, second;
+    double gain = 0.0;
+  };
+  Second second_in(std::size_t k) const;
+  void split(double cost);
+  double gain_beside(std::size_t k, const Imprint& imprint, DepthSamples& samples) const;
+  PlacedImprint placed_at(std::size_t k) const;
+  void measure(PlacedImprint& one) const;
+  bool deepest_vertex(const PlacedImprint& one, double& x, double& y, double& height) const;
+
+  double doubt(const WedgeSite& site, const Imprint& imprint) const;
+
+  const PatchCells* cells_;
+  WedgeScale scale_;
+  Surprise surprise_;
+  std::vector<WedgeSite> sites_;
+  std::vector<Fit> fits_;
+  std::vector<std::vector<std::uint32_t>> near_;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,61 @@
+#include "core/script/find_wedges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/script/arrange_text.h"
+#include "core/script/usual_directions.h"
+#include "core/script/wedge_measure.h"
+#include "core/script/wedge_width.h"
+
+namespace dubsar {
+namespace {
+
+constexpr double kFindLeastDepth = 0.35;  // of the usual depth, of the closed surface
+constexpr double kFindCost = 0.0012;      // what a wedge has to explain: a fifth of what a usual one does
+constexpr int kFindRounds = 3;
+constexpr int kFindVotes = 3;  // rounds in which the tablet's own directions count
+
+}  // namespace
+
+Result<WedgesFound> find_wedges(const TriMesh& mesh, const WedgeSearch& search, Progress& progress) {
+  if (mesh.triangles.empty())
+    return fail(ErrorKind::kBadData, "wedges: a surface without triangles found, expected a tablet");
+  progress.begin("wedges", 3, "step");
+  const PatchCells cells(mesh);
+  WedgesFound out;
+  if (!cells.empty()) out.scale = wedge_scale(cells, search.width_mm);
+  progress.advance(1);
+  if (progress.cancelled()) return cancelled_error();
+  if (out.scale.width_mm > 0.0) {
+    const std::vector<DeepPlace> places = deep_places(cells, out.scale, kFindLeastDepth, 1);
+    out.places = static_cast<std::int64_t>(places.size());
+    ReliefExplanation relief(cells, out.scale, places);
+    progress.advance(1);
+    if (progress.cancelled()) return cancelled_error();
+    relief.explain(kFindRounds, kFindCost);
+    DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(mesh));
+    TextSides sides(frame);
+    for (int round = 0; round < kFindVotes; ++round) {
+      const std::vector<PlacedImprint> placed = relief.placed();
+      if (round == 0) turn_sides(sides, placed);
+      const UsualDirections usual(placed, sides);
+      relief.prefer([usual, sides](const glm::dvec3& along, const glm::dvec3& normal, const Imprint& imprint) {
+        return usual.surprise(sides.angle_of(along, normal).angle, is_long(imprint));
+      });
+      relief.explain(1, kFindCost);
+    }
+    out.sides = sides;
+    for (const PlacedImprint& one : relief.placed()) {
+      ScriptWedge wedge = measured_wedge(one, out.scale);
+      if (wedge.confidence < search.least_confidence) continue;
+      out.wedges.push_back(wedge);
+    }
+    arrange_text(out.wedges, sides);
+  }
+  progress.end();
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,86 @@
+#include "core/script/wedge_width.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/base/numbers/median.h"
+#include "core/script/explain_relief.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kScaleSizes = 4;
+constexpr double kScaleFinest = 100.0;     // of the root of the two longest extents' product, the least width
+constexpr double kScaleFewestEdges = 3.0;  // over a width
+constexpr double kScaleDepth = 0.45;       // of a width, to begin with
+constexpr double kScaleLeastDepth = 0.4;   // of that
+constexpr double kScaleCost = 0.0012;
+// What blur of a scan and the stylus's own corner leave: none, to half of a width.
+constexpr std::array<double, 4> kScaleRoundings{0.0, 0.15, 0.3, 0.45};
+constexpr int kScaleTiles = 700;
+constexpr std::size_t kScalePlaces = 140;  // that are fitted, of those
+constexpr std::size_t kScaleFewest = 5;
+
+struct Tried {
+  WedgeScale scale;
+  double explained = 0.0;  // gain times area
+  std::vector<PlacedImprint> placed;
+};
+
+Tried try_scale(const PatchCells& cells, const WedgeScale& scale, int rounds) {
+  const double tiles = 1.5 * cells.area_mm2() / (scale.width_mm * scale.width_mm);
+  const int skip = std::max(1, static_cast<int>(tiles / kScaleTiles));
+  std::vector<DeepPlace> places = deep_places(cells, scale, kScaleLeastDepth, skip);  // the deepest first
+  const std::size_t every = (places.size() + kScalePlaces - 1) / kScalePlaces;
+  for (std::size_t k = 0; k * every < places.size() && every > 1; ++k) places[k] = places[k * every];
+  if (every > 1) places.resize((places.size() + every - 1) / every);
+  ReliefExplanation relief(cells, scale, places);
+  relief.explain(rounds, kScaleCost);
+  Tried out{scale, 0.0, relief.placed()};
+  for (const PlacedImprint& one : out.placed) out.explained += one.gain;
+  out.explained *= scale.width_mm * scale.width_mm * skip * static_cast<double>(std::max<std::size_t>(1, every));
+  return out;
+}
+
+WedgeScale usual_of(const Tried& tried) {
+  std::vector<double> widths, depths;
+  for (const PlacedImprint& one : tried.placed) {
+    widths.push_back(one.imprint.width() * tried.scale.width_mm);
+    depths.push_back(one.imprint.depth() * tried.scale.width_mm);
+  }
+  return {median(widths), median(depths)};
+}
+
+}  // namespace
+
+WedgeScale wedge_scale(const PatchCells& cells, double width_mm) {
+  const glm::dvec3 e = cells.extent_mm();
+  const double shortest = std::min({e.x, e.y, e.z});
+  const double root = std::sqrt(e.x * e.y * e.z / std::max(shortest, 1e-12));
+  Tried best;
+  for (int size = 0; size < (width_mm > 0.0 ? 1 : kScaleSizes); ++size) {
+    const double width = width_mm > 0.0 ? width_mm : root / kScaleFinest * std::exp2(size);
+    if (width < kScaleFewestEdges * cells.mean_edge_mm()) continue;
+    Tried tried = try_scale(cells, {width, kScaleDepth * width}, 0);
+    if (tried.explained > best.explained) best = std::move(tried);
+  }
+  if (best.placed.size() < kScaleFewest) return {};
+  best = try_scale(cells, usual_of(best), 1);
+  if (best.placed.size() < kScaleFewest) return {};
+  const WedgeScale usual = usual_of(best);
+  best = Tried{};
+  for (const double rounding : kScaleRoundings) {
+    WedgeScale round = usual;
+    round.rounding = rounding;
+    Tried tried = try_scale(cells, round, 1);
+    if (tried.explained > best.explained) best = std::move(tried);
+  }
+  if (best.placed.size() < kScaleFewest) return {};
+  WedgeScale out = usual_of(best);
+  out.rounding = best.scale.rounding * usual.width_mm / out.width_mm;
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,137 @@
+// Wedges found on a surface whose wedges are known: a plate on which the phantom's stylus wrote, as a mesh, without a
+// scan between.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <random>
+
+#include "core/script/find_wedges.h"
+#include "core/script/hand_copy.h"
+
+namespace dubsar {
+namespace {
+
+struct Pressed {
+  double x, y, angle;
+};
+constexpr double kPlateWidth = 2.0, kPlateDepth = 1.1, kPlateBack = 0.6, kPlateFront = 1.6, kPlateTail = 4.5;
+constexpr double kPlateHalf = 22.0, kPlateThick = 4.0, kPlateStep = 0.2;
+
+double plate_depth(const std::vector<Pressed>& wedges, double x, double y) {
+  double depth = 0.0;
+  for (const Pressed& w : wedges) {
+    const double c = std::cos(w.angle), s = std::sin(w.angle), a = c * (x - w.x) + s * (y - w.y),
+                 b = std::abs(c * (y - w.y) - s * (x - w.x));
+    const double head = std::min(
+        kPlateDepth * (1 + a / kPlateBack),
+        kPlateDepth * (1 - a / kPlateFront) - b * 2 * kPlateDepth * (1 + kPlateBack / kPlateFront) / kPlateWidth);
+    const double tail =
+        a < 0 ? 0.0 : 0.6 * kPlateDepth * (1 - a / kPlateTail) - b * 1.2 * kPlateDepth / (0.5 * kPlateWidth);
+    depth = std::max({depth, head, tail});
+  }
+  return depth;
+}
+
+/// A closed box whose upper face (z = 0) is written.
+TriMesh plate(const std::vector<Pressed>& wedges) {
+  TriMesh mesh;
+  mesh.frame.input_voxel.mm = glm::dvec3(1.0);
+  mesh.frame.input_voxel.provenance = "test";
+  const int n = static_cast<int>(2 * kPlateHalf / kPlateStep);
+  const auto add_face = [&](auto&& place, bool turned) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) mesh.positions.push_back(glm::vec3(place(i * 1.0 / n, j * 1.0 / n)));
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const auto at = [&](int u, int v) { return first + static_cast<std::uint32_t>(v * (n + 1) + u); };
+        Triangle a{at(i, j), at(i + 1, j), at(i + 1, j + 1)}, b{at(i, j), at(i + 1, j + 1), at(i, j + 1)};
+        if (turned) std::swap(a[1], a[2]), std::swap(b[1], b[2]);
+        mesh.triangles.push_back(a);
+        mesh.triangles.push_back(b);
+      }
+  };
+  const auto at = [](double u) { return kPlateHalf * (2 * u - 1); };
+  add_face([&](double u, double v) { return glm::dvec3(at(u), at(v), -plate_depth(wedges, at(u), at(v))); }, false);
+  add_face([&](double u, double v) { return glm::dvec3(at(u), at(v), -kPlateThick); }, true);
+  for (const double side : {-1.0, 1.0}) {
+    add_face([&](double u, double v) { return glm::dvec3(side * kPlateHalf, at(u), -kPlateThick * (1 - v)); },
+             side < 0);
+    add_face([&](double u, double v) { return glm::dvec3(at(u), side * kPlateHalf, -kPlateThick * (1 - v)); },
+             side > 0);
+  }
+  return mesh;
+}
+
+std::vector<Pressed> page_of_wedges() {
+  std::vector<Pressed> out;
+  std::mt19937 random(5);
+  std::normal_distribution<double> tremble(0.0, 0.05);
+  int k = 0;
+  for (double y = 15.0; y > -18.0; y -= 6.5)
+    for (double x = -17.0; x < 15.0; x += 6.5, ++k) {
+      constexpr std::array<double, 4> kAngles{0.0, -90.0, -90.0, -45.0};
+      out.push_back({x, y, kAngles[static_cast<std::size_t>(k) % 4] * std::numbers::pi / 180.0 + tremble(random)});
+    }
+  return out;
+}
+
+TEST(PressedWedges, AreFoundWhereTheyWerePressed) {
+  const std::vector<Pressed> page = page_of_wedges();
+  Progress progress;
+  const auto found = find_wedges(plate(page), {}, progress);
+  ASSERT_TRUE(found) << found.error().message;
+  int hit = 0;
+  for (const Pressed& w : page) {
+    const glm::dvec3 along(std::cos(w.angle), std::sin(w.angle), 0.0),
+        head = glm::dvec3(w.x, w.y, 0.0) - kPlateBack * along;
+    for (const ScriptWedge& f : found->wedges)
+      if (glm::distance(f.head_mm, head) < 0.15 && glm::dot(f.direction, along) > std::cos(0.08)) {
+        ++hit;
+        double deepest = 0.0;  // of the mesh's vertices
+        for (double y = -kPlateHalf; y < kPlateHalf; y += kPlateStep)
+          for (double x = -kPlateHalf; x < kPlateHalf; x += kPlateStep)
+            if (std::hypot(x - w.x, y - w.y) < 0.4) deepest = std::max(deepest, plate_depth(page, x, y));
+        EXPECT_NEAR(f.depth_mm, deepest, 0.08 * kPlateDepth);
+        EXPECT_NEAR(f.width_mm, kPlateWidth, 0.2 * kPlateWidth);
+        break;
+      }
+  }
+  EXPECT_GE(hit, 0.95 * static_cast<double>(page.size()))
+      << found->wedges.size() << " wedges of a usual width of " << found->scale.width_mm << " mm at " << found->places
+      << " places";
+  EXPECT_LE(found->wedges.size(), page.size() + 1);
+}
+
+TEST(PressedWedges, UnwrittenClayHasNone) {
+  Progress progress;
+  const auto found = find_wedges(plate({}), {}, progress);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_TRUE(found->wedges.empty());
+}
+
+TEST(PressedWedges, TheHandCopyShowsThemWhereTheyAre) {
+  const std::vector<Pressed> page = page_of_wedges();
+  const TriMesh mesh = plate(page);
+  Progress progress;
+  const auto found = find_wedges(mesh, {}, progress);
+  ASSERT_TRUE(found);
+  const auto sheet = hand_copy(mesh, *found, {});
+  ASSERT_TRUE(sheet) << sheet.error().message;
+  // Heads are as long on paper as on the clay, wherever the sheet puts them.
+  std::size_t drawn = 0;
+  for (const CopyLayer& layer : sheet->layers)
+    for (const CopyGroup& group : layer.groups) {
+      ++drawn;
+      const ScriptWedge& w = found->wedges[static_cast<std::size_t>(std::stoi(group.id.substr(1))) - 1];
+      const auto& head = group.paths.front().points;
+      EXPECT_NEAR(glm::distance(head[0], head[1]), glm::distance(w.corner_mm[0], w.corner_mm[1]), 0.02) << group.id;
+    }
+  EXPECT_EQ(drawn, found->wedges.size());
+}
+
+}  // namespace
+}  // namespace dubsar
