@@ -1,0 +1,169 @@
+// Wedges found on phantoms, beside what was pressed: ./do bench script
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/exa/exa_file.h"
+#include "core/phantom/write_phantom.h"
+#include "core/pipeline/pipeline.h"
+#include "core/script/find_wedges.h"
+#include "tests/core/script/wedge_score.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::string_view kHelp =
+    "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--envelope] [--keep DIR]\n"
+    "             [--each]\n"
+    "  --depth     of a usual wedge (7)\n"
+    "  --envelope  judges the envelope's outside instead of the tablet\n"
+    "  --keep      surfaces are kept in this folder, and taken from there the next time\n"
+    "  --each      says of each wedge drawn what was pressed there, and what was missed\n";
+
+struct ScriptArguments {
+  Dims dims{320, 192, 304};
+  std::uint64_t seed = 1;
+  int seeds = 1;
+  double depth = 7.0;
+  bool unwritten = false, envelope = false, each = false;
+  std::string keep;
+};
+
+[[noreturn]] void script_usage() {
+  fmt::print(stderr, "{}", kHelp);
+  std::exit(64);
+}
+
+ScriptArguments parse_script(int argc, char** argv) {
+  ScriptArguments a;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--unwritten") {
+      a.unwritten = true;
+    } else if (word == "--envelope") {
+      a.envelope = true;
+    } else if (word == "--each") {
+      a.each = true;
+    } else if (i + 1 == argc) {
+      script_usage();
+    } else if (const char* value = argv[++i]; word == "--seed") {
+      a.seed = std::strtoull(value, nullptr, 10);
+    } else if (word == "--seeds") {
+      a.seeds = std::atoi(value);
+    } else if (word == "--depth") {
+      a.depth = std::atof(value);
+    } else if (word == "--keep") {
+      a.keep = value;
+    } else if (word == "--size") {
+      long x = 0, y = 0, z = 0;
+      if (std::sscanf(value, "%ldx%ldx%ld", &x, &y, &z) != 3) script_usage();
+      a.dims = {x, y, z};
+    } else {
+      script_usage();
+    }
+  }
+  return a;
+}
+
+template <class T>
+T script_value(Result<T> result) {
+  if (result) return std::move(*result);
+  fmt::print(stderr, "script_bench: {}\n", result.error().message);
+  std::exit(1);
+}
+
+SurfaceModel surface_of(const phantom::PhantomOptions& options, const std::string& keep, Progress& progress) {
+  namespace fs = std::filesystem;
+  const fs::path kept =
+      fs::path(keep) / fmt::format("s{}_{}x{}x{}_d{:g}{}.exa", options.seed, options.dims.x, options.dims.y,
+                                   options.dims.z, options.wedge_depth_vox, options.written ? "" : "_unwritten");
+  if (!keep.empty() && fs::exists(kept)) return script_value(read_exa(kept, progress));
+  const fs::path scan = fs::temp_directory_path() / fmt::format("dubsar_script_{}.h5", ::getpid());
+  script_value(phantom::write_phantom(scan, std::nullopt, options, progress));
+  PipelineOptions pipeline;
+  pipeline.import.path = scan;
+  pipeline.occlusion.reset();
+  auto result = run_pipeline(pipeline, progress);
+  fs::remove(scan);
+  SurfaceModel model = std::move(script_value(std::move(result)).model);
+  if (!keep.empty()) script_value(write_exa(kept, model, progress));
+  return model;
+}
+
+void print_each(const phantom::Phantom& truth, const WedgesFound& found, const WedgeScore& score) {
+  const double voxel = truth.options().voxel_mm;
+  for (std::size_t f = 0; f < found.wedges.size(); ++f) {
+    const ScriptWedge& w = found.wedges[f];
+    const JudgedWedge& j = score.judged[f];
+    const int t = j.truth >= 0 ? j.truth : j.near;
+    fmt::print(
+        "{} turn {} conf {:.3f} kind {:<12} {} line {:>2} pressed {:>2} depth {:.2f} width {:.2f} length {:.2f}  "
+        "pressed {:<12} off {:.2f} turned {:.0f} "
+        "depth {:.2f}\n",
+        j.truth >= 0 ? "real " : "FALSE", found.sides.turned(w.side), w.confidence, name_in(kWedgeKinds, w.kind),
+        name_in(kTextSides, w.side), w.line, t >= 0 ? truth.wedges()[static_cast<std::size_t>(t)].line : 0,
+        w.depth_mm / voxel, w.width_mm / voxel, w.length_mm / voxel,
+        t >= 0 ? name_in(phantom::kStrokeKinds, truth.wedges()[static_cast<std::size_t>(t)].kind) : "-", j.head_off,
+        j.turned_deg, t >= 0 ? truth.wedges()[static_cast<std::size_t>(t)].depth : 0.0);
+  }
+  for (const int t : score.missed) {
+    const phantom::Wedge& w = truth.wedges()[static_cast<std::size_t>(t)];
+    double drawn = 1e9, pressed = 1e9;
+    for (const ScriptWedge& f : found.wedges) drawn = std::min(drawn, glm::distance(f.tip_mm / voxel, w.position));
+    for (const phantom::Wedge& o : truth.wedges())
+      if (&o != &w && o.owner == w.owner) pressed = std::min(pressed, glm::distance(o.position, w.position));
+    fmt::print(
+        "MISSED {} {} depth {:.2f} length {:.1f} width {:.1f} state {} gap {:.1f}: next drawn tip {:.1f}, next pressed "
+        "{:.1f}\n",
+        phantom::kSideFrames.size() ? static_cast<int>(w.side) : 0, name_in(phantom::kStrokeKinds, w.kind), w.depth,
+        w.length, 2 * w.head_half_width, name_in(phantom::kWedgeCases, w.state), truth.gap_width(w.position), drawn,
+        pressed);
+  }
+}
+
+int run_script(int argc, char** argv) {
+  const ScriptArguments a = parse_script(argc, argv);
+  SilentProgress progress;
+  WedgeScore all;
+  for (int k = 0; k < a.seeds; ++k) {
+    phantom::PhantomOptions options;
+    options.dims = a.dims;
+    options.seed = a.seed + static_cast<std::uint64_t>(k);
+    options.wedge_depth_vox = a.unwritten ? 0.0 : a.depth;
+    options.written = !a.unwritten;
+    const auto truth = script_value(phantom::Phantom::create(options));
+    const SurfaceModel model = surface_of(options, a.keep, progress);
+    const TriMesh mesh = a.envelope
+                             ? script_value(make_tri_mesh(
+                                   model, {.partition = model.partitions.find(PartitionKind::kEnvelopeOutside)->id}))
+                             : script_value(make_tri_mesh(model, {.body = "tablet"}));
+    const auto start = std::chrono::steady_clock::now();
+    const WedgesFound found = script_value(find_wedges(mesh, {}, progress));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const WedgeScore score = judge_wedges(
+        *truth, found.wedges,
+        {.owner = a.envelope ? phantom::Owner::kEnvelope : phantom::Owner::kTablet, .grid_step = mesh.frame.scale.x});
+    const double voxel = truth->options().voxel_mm;
+    fmt::print("seed {} width {:.2f} depth {:.2f} rounding {:.2f} voxels, {} places, {} vertices, {:.2f} s: {}\n",
+               options.seed, found.scale.width_mm / voxel, found.scale.depth_mm / voxel,
+               found.scale.rounding * found.scale.width_mm / voxel, found.places, mesh.positions.size(), seconds,
+               score.text());
+    if (a.each) print_each(*truth, found, score);
+    std::fflush(stdout);
+    all.add(score);
+  }
+  if (a.seeds > 1) fmt::print("all: {}\n", all.text());
+  return 0;
+}
+
+}  // namespace
+}  // namespace dubsar
+
+int main(int argc, char** argv) { return dubsar::run_script(argc, argv); }
