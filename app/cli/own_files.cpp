@@ -95,6 +95,13 @@ Found found_in(const InputFile& file) {
   if (begins("PK\x03\x04")) return {"an archive that dubsar did not write", kMesh, tail.ends_with("made by dubsar")};
   if (begins("dubsar STL, units ")) return {"an STL mesh", kMesh, true};
   if (begins("# made by dubsar")) return {"an OBJ mesh", kMesh, true};
+  if (begins("id,side,column,line,order,kind,head_x,")) return {"a table of wedges", FileFormat::kEdition, true};
+  if (begins("<?xml") && has(head, "\n<!-- made by dubsar; one unit is one mm -->"))
+    return {"a hand copy", FileFormat::kEdition, true};
+  if (begins("%PDF-"))
+    return {"a PDF file that dubsar did not write", FileFormat::kEdition,
+            has(head.substr(0, 64), "\n% made by dubsar\n")};
+  if (begins("999\nmade by dubsar")) return {"a hand copy", FileFormat::kEdition, true};
   if (begins("{") && has(head.substr(0, head.find('\n')), R"("polled":)"))
     return {"a recording", FileFormat::kOther, true};
   const std::size_t text = head.find_first_not_of(" \t\r\n");
@@ -115,6 +122,7 @@ std::string what_would_be_lost(const fs::path& path, FileFormat format) {
   if (file->size() == 0) return {};
   Found found = found_in(*file);
   if (found.own && found.format == format) return {};
+  if (found.own && format == FileFormat::kEdition && found.format == FileFormat::kJson) return {};
   if (format == FileFormat::kPhantom && found.format == FileFormat::kPhantom)
     return "an HDF5 file that no phantom made";
   if (format == FileFormat::kJson && found.what == "a file that dubsar did not write") return "no JSON";

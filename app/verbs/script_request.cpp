@@ -1,0 +1,59 @@
+#include "app/verbs/script_request.h"
+
+#include <fmt/format.h>
+
+#include "core/base/files/atomic_file.h"
+#include "core/base/system/log.h"
+
+namespace dubsar::app {
+namespace {
+
+/// The tablet where there is one, else everything.
+Result<TriMesh> load_script_part(const ScriptRequest& request, Progress& progress) {
+  DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(request.unit));
+  const MeshReadOptions foreign{unit_mm, true};
+  if (request.part != "auto" && request.part != "all")
+    return load_mesh({request.in, {request.part}, true, foreign}, progress);
+  if (request.part == "auto")
+    if (Result<TriMesh> tablet = load_mesh({request.in, {"tablet"}, true, foreign}, progress);
+        tablet || tablet.error().kind != ErrorKind::kUsage)
+      return tablet;
+  return load_mesh({request.in, {}, true, foreign}, progress);
+}
+
+}  // namespace
+
+void add_script_options(Arguments& command, ScriptRequest& request) {
+  command.reads("IN", request.in, "EXA, PLY, OBJ, STL or GLB file").required();
+  command.value("--part", request.part, "which part: tablet where there is one (auto), all, envelope outside, ...");
+  command.value("--unit", request.unit, kUnitHelp);
+  command.value("--width", request.width_mm, "usual width of a head in mm, where it is known (default: found)")
+      .not_negative();
+  command.value("--confidence", request.confidence, "least confidence of a wedge, 0 to 1 (0.5)").range(0.0, 1.0);
+}
+
+Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progress) {
+  ScriptSurface out;
+  DUBSAR_ASSIGN(out.mesh, load_script_part(request, progress));
+  if (!out.mesh.frame.input_voxel.known()) {
+    if (is_exa_file(request.in))
+      return fail(ErrorKind::kUsage,
+                  "{} does not say how large its voxels are, so there are no mm; process the scan again with "
+                  "--voxel-size, e.g. 38um",
+                  request.in);
+    log(LogLevel::kWarning, fmt::format("{} does not state its units; taken as millimetres", request.in));
+  }
+  WedgeSearch search;
+  search.width_mm = request.width_mm;
+  search.least_confidence = request.confidence;
+  DUBSAR_ASSIGN(out.found, find_wedges(out.mesh, search, progress));
+  return out;
+}
+
+Result<void> write_text_file(const std::string& path, const std::string& text) {
+  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
+  DUBSAR_TRY(file.write(text));
+  return file.commit();
+}
+
+}  // namespace dubsar::app
