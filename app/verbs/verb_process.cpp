@@ -16,6 +16,7 @@
 #include "core/base/numbers/units.h"
 #include "core/base/system/budget.h"
 #include "core/base/system/large_blocks.h"
+#include "core/mesh_io/mesh_io.h"
 #include "core/pipeline/pipeline.h"
 #include "core/pipeline/report.h"
 
@@ -32,6 +33,19 @@ struct Room {
   std::string memory, scratch;
 };
 
+/// Ambient light.
+struct LightRequest {
+  OcclusionEngine engine = OcclusionEngine::kBricks;
+  int rays = 160;
+  double radius = 64.0;  ///< grid steps
+};
+
+/// How parts are closed where they touch, and the mesh that is written where no surface file holds that.
+struct ContactRequest {
+  ContactMesh mesh = ContactMesh::kPatches;
+  std::string parts;
+};
+
 struct ProcessRequest {
   std::vector<std::string> inputs;
   std::string in, out;  ///< of one scan
@@ -39,9 +53,9 @@ struct ProcessRequest {
   bool resume = false, many = false;
   InputOptionTexts input;
   PipelineOptions pipeline;
-  double threshold = 0.0, sharpen = 1.0, radius = 64.0;
-  int rays = 160;
-  OcclusionEngine ao_engine = OcclusionEngine::kBricks;
+  double threshold = 0.0, sharpen = 1.0;
+  LightRequest light;
+  ContactRequest contact;
   Without without;
   Room room;
 };
@@ -99,15 +113,17 @@ void add_surface_options(Arguments command, ProcessRequest& options) {
   group.flag("--no-fill-holes", options.without.holes, "leave the holes that segmentation cuts");
   group.flag("--no-contact", options.without.contact, "leave smooth patches where tablet and envelope touch");
   group.choice<ContactMesh>(
-      "--contact", p.contact_mesh, choices_of(kContactMeshes),
+      "--contact", options.contact.mesh, choices_of(kContactMeshes),
       "how parts are closed where they touch: patches (default), or labels, one mesh of all parts: "
       "a trial that writes PLY");
+  group.writes("--parts", options.contact.parts, FileFormat::kMesh,
+               "mesh (PLY, STL, OBJ, GLB or 3MF) that is written in place of the EXA file, with --contact labels");
   group.flag("--no-ao", options.without.ao, "skip ambient occlusion");
-  group.choice<OcclusionEngine>("--ao-by", options.ao_engine, choices_of(kOcclusionEngines),
+  group.choice<OcclusionEngine>("--ao-by", options.light.engine, choices_of(kOcclusionEngines),
                                 "what rays of ambient occlusion meet: march (default), distances on the grid, or "
                                 "triangles, exact and slower");
-  group.value("--ao-rays", options.rays, "rays per vertex").range(1, 65536);
-  group.value("--ao-radius", options.radius, "reach of the rays in grid steps").positive();
+  group.value("--ao-rays", options.light.rays, "rays per vertex").range(1, 65536);
+  group.value("--ao-radius", options.light.radius, "reach of the rays in grid steps").positive();
 }
 
 void add_resource_options(Arguments command, ProcessRequest& options) {
@@ -130,7 +146,8 @@ std::vector<PlannedStage> plan_of(const ProcessRequest& options) {
   run.fill_holes = !options.without.holes;
   run.contact = !options.without.contact;
   run.passes = options.pipeline.denoise.iterations;
-  run.rays = options.without.ao ? 0.0 : options.rays * (options.ao_engine == OcclusionEngine::kBricks ? 1.0 : 2.4);
+  run.rays =
+      options.without.ao ? 0.0 : options.light.rays * (options.light.engine == OcclusionEngine::kBricks ? 1.0 : 2.4);
   std::vector<PlannedStage> plan;
   for (const StagePlan& stage : kRunPlan)
     for (const StagePhase& phase : stage.phases)
@@ -170,14 +187,22 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
   }
   if (!options.room.scratch.empty()) p.import.budget.scratch_folder = options.room.scratch;
   if (options.without.resample) p.detail = Detail::kScan;
-  p.trace_contact = !options.without.contact;
+  const bool labels = options.contact.mesh == ContactMesh::kLabels;
+  p.contact = options.contact.mesh;
+  if (options.without.contact) p.contact.reset();
+  if (labels == options.contact.parts.empty())
+    return fail(ErrorKind::kUsage, "{}",
+                labels ? "--contact labels makes a surface that EXA files do not hold yet: give --parts FILE.ply, too"
+                       : "--parts is for --contact labels; else make the EXA file and take dubsar export");
+  if (labels) DUBSAR_TRY(mesh_format_from_path(options.contact.parts));
   p.sample.closed = !options.without.cap;
   p.fill_holes = !options.without.holes;
   if (options.without.ao)
     p.occlusion.reset();
   else
-    p.occlusion = OcclusionOptions{
-        .engine = options.ao_engine, .rays = options.rays, .radius_vox = static_cast<float>(options.radius)};
+    p.occlusion = OcclusionOptions{.engine = options.light.engine,
+                                   .rays = options.light.rays,
+                                   .radius_vox = static_cast<float>(options.light.radius)};
   if (command.given("--sharpen")) p.sample.sharpen = static_cast<float>(options.sharpen);
   if (command.given("--threshold")) p.threshold = static_cast<float>(options.threshold);
   Result<PipelineResult> made = run_pipeline(p, progress);
@@ -186,7 +211,13 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
         "; allow more with --memory, take --detail half where it is not taken yet, a part of the scan with --crop, or "
         "fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
-  DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
+  if (labels) {
+    DUBSAR_ASSIGN(const TriMesh parts, make_tri_mesh(result.model));
+    DUBSAR_TRY(write_mesh(options.contact.parts, parts, {}, progress));
+    options.out = options.contact.parts;
+  } else {
+    DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
+  }
   result.model = {};  // it is in the file
   DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(result.mesh, result.report.mesh.watertight()));
   VerbResult out;

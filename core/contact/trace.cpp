@@ -18,7 +18,7 @@
 #include "core/contact/interface_rest.h"
 #include "core/contact/interface_shape.h"
 #include "core/contact/kept_shape.h"
-#include "core/contact/labelled_contact.h"
+#include "core/contact/labelled/labelled_contact.h"
 #include "core/contact/pockets.h"
 #include "core/contact/recentre.h"
 #include "core/extract/triangulate.h"

@@ -167,10 +167,8 @@ void add_labels(const SurfaceModel& model, const ExaHeader& header, BlockList& b
 
 Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress, ExaProfile profile) {
   if (model.drawing)
-    return fail(
-        ErrorKind::kUsage,
-        "exa: a surface of labelled points was found, which EXA files do not hold yet; write PLY or STL, or take "
-        "--contact patches");
+    return fail(ErrorKind::kUsage,
+                "exa: a surface of labelled points was found, which EXA files do not hold yet; write it as PLY or STL");
   BlockList positions;
   {
     DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));

@@ -69,7 +69,7 @@ RunShape wanted_shape(const PipelineOptions& options) {
   RunShape shape;
   shape.artefacts = options.artefacts == Artefacts::kAuto;
   shape.fill_holes = options.fill_holes;
-  shape.contact = options.trace_contact;
+  shape.contact = options.contact.has_value();
   shape.passes = options.denoise.iterations;
   shape.rays = options.occlusion ? options.occlusion->rays : 0.0;
   return shape;
@@ -131,11 +131,11 @@ struct Run {
   /// How much of the surface is contact is known now. Where there is no room to trace it, smooth patches stay.
   Result<void> trace_or_untangle() {
     SurfaceModel& model = separated.model;
-    if (options.trace_contact && separated.segment.nested && !separated.segment.enclosure_refused) {
+    if (options.contact && separated.segment.nested && !separated.segment.enclosure_refused) {
       plan.run.patches = static_cast<double>(patch_triangles(model));
       const Result<void> fits = check_fits(plan.run, plan.room, RunStage::kContact);
       if (fits) {
-        DUBSAR_ASSIGN(TracedModel traced, trace(std::move(model), options.contact_mesh, imported, run));
+        DUBSAR_ASSIGN(TracedModel traced, trace(std::move(model), *options.contact, imported, run));
         model = std::move(traced.model);
         contact = std::move(traced.contact);
       } else {

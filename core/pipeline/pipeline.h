@@ -28,8 +28,8 @@ struct PipelineOptions {
   ExaProfile exa_profile = ExaProfile::kCompact;
   SegmentOptions segment;
   bool fill_holes = true;
-  bool trace_contact = true;  ///< with filled holes only
-  ContactMesh contact_mesh = ContactMesh::kPatches;
+  /// With filled holes only; none: the smooth patches stay.
+  std::optional<ContactMesh> contact = ContactMesh::kPatches;
   std::optional<OcclusionOptions> occlusion = OcclusionOptions{};  ///< none: no ambient light
 };
 

@@ -78,8 +78,8 @@ void count_crossings(const TriMesh& mesh, JudgedRow& judged) {
   for (const auto& [a, b] : self_intersections(mesh.positions, mesh.triangles))
     ++(of_patch(a) || of_patch(b) ? judged.crossings : judged.self_crossings);
   const ExactCheck exact = check_exactly(mesh.positions, mesh.triangles);
-  judged.touching += exact.crossing_pairs;
-  judged.flat += exact.zero_area_triangles;
+  judged.exact.crossing_pairs += exact.crossing_pairs;
+  judged.exact.zero_area_triangles += exact.zero_area_triangles;
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   PipelineOptions options;
   options.import.path = path;
   options.detail = how.detail;
-  options.contact_mesh = how.mesh;
+  options.contact = how.mesh;
   if (!how.light) options.occlusion.reset();
   const PipelineResult result = value_or_exit(run_pipeline(options, progress));
   JudgedRow judged;

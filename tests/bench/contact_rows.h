@@ -9,6 +9,7 @@
 
 #include "core/contact/trace.h"
 #include "core/filter/edge_spread.h"
+#include "core/mesh/exact_crossings.h"
 #include "core/phantom/options.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
@@ -40,10 +41,10 @@ struct JudgedRow {
   phantom::ContactScore contact;
   phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
   TabletError tablet;
-  float sharpen = 0.0f;                 ///< amount that was used
-  std::int64_t crossings = 0;           ///< pairs of triangles, one of a patch, that cross on tablet or envelope
-  std::int64_t self_crossings = 0;      ///< pairs of the surface itself
-  std::int64_t touching = 0, flat = 0;  ///< pairs of triangles of tablet or envelope, and triangles: check_exactly()
+  float sharpen = 0.0f;             ///< amount that was used
+  std::int64_t crossings = 0;       ///< pairs of triangles, one of a patch, that cross on tablet or envelope
+  std::int64_t self_crossings = 0;  ///< pairs of the surface itself
+  ExactCheck exact;                 ///< of tablet and envelope, each alone
   bool traced = false;
   std::optional<EdgeSpread> blur;
   double step = 1.0;   ///< voxels of the scan in one of the grid

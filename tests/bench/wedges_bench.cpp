@@ -153,7 +153,8 @@ void print_row(const ContactRow& row, const JudgedRow& j) {
       c.cases[1].shown_fraction(), c.cases[2].kept_fraction(), c.near_fraction(), percent(2), percent(3),
       std::min(j.seen.owner[0].purity(), j.seen.owner[1].purity()),
       std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.self_crossings,
-      j.touching, j.flat, j.blur ? std::sqrt(j.blur->variance) : NAN, j.cpu_s, j.contact_cpu_s, j.peak_mib, j.remark);
+      j.exact.crossing_pairs, j.exact.zero_area_triangles, j.blur ? std::sqrt(j.blur->variance) : NAN, j.cpu_s,
+      j.contact_cpu_s, j.peak_mib, j.remark);
   std::fflush(stdout);
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "core/mesh/evidence.h"
+#include "core/mesh/exact_crossings.h"
 #include "core/mesh/intersections.h"
 #include "core/mesh/mesh_check.h"
 #include "core/phantom/write_phantom.h"
@@ -38,6 +39,7 @@ struct Grid {
   Dims scan{224, 128, 208};
   Detail detail = Detail::kScan;
   double glued = 0.2;  ///< share of the tablet
+  ContactMesh mesh = ContactMesh::kPatches;
 };
 constexpr Grid kHalved{{384, 208, 360}, Detail::kHalf};
 
@@ -57,7 +59,7 @@ TracedScan traced_scan(phantom::Contact contact, double film, std::uint64_t seed
   options.import.path = path;
   options.detail = grid.detail;
   options.occlusion = std::nullopt;
-  options.trace_contact = trace;
+  options.contact = trace ? std::optional(grid.mesh) : std::nullopt;
   TracedScan made{run_pipeline(options, progress).value(), phantom::Phantom::create(wanted).value()};
   std::filesystem::remove(path);
   return made;
@@ -115,6 +117,20 @@ TEST(TraceContact, FilmOfHalfAVoxelIsFollowed) {
   EXPECT_EQ(score.false_wedges(), 0);
   EXPECT_LT(traced_scan(phantom::Contact::kFilm, 0.5, 60617, false).score().near_fraction(), 0.8)
       << "smooth patches do as well";
+}
+
+TEST(TraceContact, LabelsGiveClosedPartsOfWhichNoTwoTrianglesTouch) {
+  const TracedScan made = traced_scan(phantom::Contact::kFilm, 0.5, 60641, true, true,
+                                      {{224, 128, 208}, Detail::kScan, 0.2, ContactMesh::kLabels});
+  ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+  expect_closed_and_mating(made);
+  for (const char* name : {"tablet", "envelope"}) {
+    const TriMesh mesh = made.body(name);
+    EXPECT_EQ(check_exactly(mesh.positions, mesh.triangles), ExactCheck{}) << name;
+  }
+  const phantom::ContactScore score = made.score();
+  EXPECT_GE(score.near_fraction(), 0.92);
+  EXPECT_EQ(score.false_wedges(), 0);
 }
 
 TEST(TraceContact, NothingIsInventedWhereTheEnvelopeFillsTheWedges) {

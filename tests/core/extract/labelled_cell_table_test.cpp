@@ -1,4 +1,4 @@
-#include "core/extract/labelled_cell_table.h"
+#include "core/extract/labelled/labelled_cell_table.h"
 
 #include <gtest/gtest.h>
 

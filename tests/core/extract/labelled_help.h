@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/extract/labelled_mesh.h"
+#include "core/extract/labelled/labelled_mesh.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/mesh_check.h"
 #include "tests/core/extract/extract_help.h"
@@ -80,7 +80,7 @@ inline std::vector<Triangle> surface_of(const LabelledMesh& labelled, std::span<
                                         std::span<const std::uint32_t> first_triangle, PointLabel label) {
   std::vector<Triangle> surface;
   for (std::uint32_t q = 0; q < labelled.pairs.size(); ++q) {
-    if (!labelled.has_label(q, label)) continue;
+    if (PointLabel(labelled.pairs[q] & 3u) != label && PointLabel(labelled.pairs[q] >> 2) != label) continue;
     for (std::uint32_t t = first_triangle[q]; t < first_triangle[q + 1]; ++t) {
       Triangle triangle = triangles[t];
       if (PointLabel(labelled.pairs[q] & 3u) == label) std::swap(triangle[1], triangle[2]);

@@ -3,8 +3,8 @@
 #include <glm/vec4.hpp>
 #include <string>
 
-#include "core/extract/quad_envelope.h"
-#include "core/extract/taking_back.h"
+#include "core/extract/labelled/quad_envelope.h"
+#include "core/extract/labelled/taking_back.h"
 #include "core/mesh/exact_crossings.h"
 #include "tests/core/extract/labelled_help.h"
 

@@ -48,7 +48,7 @@ TEST_F(ForecastOfPhantoms, TheSurfaceAndItsFileAreThoseOfTheRun) {
     PipelineOptions options;
     options.import.path = folder_ / "scan.h5";
     options.detail = detail;
-    options.trace_contact = false;
+    options.contact.reset();
     options.occlusion.reset();
     SilentProgress progress;
     auto made = run_pipeline(options, progress);

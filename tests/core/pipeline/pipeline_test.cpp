@@ -43,7 +43,7 @@ class Pipeline : public ::testing::Test {
   }
   static Result<PipelineResult> process(const fs::path& out, Progress& progress, bool contact = true) {
     PipelineOptions wanted = options();
-    wanted.trace_contact = contact;
+    if (!contact) wanted.contact.reset();
     DUBSAR_ASSIGN(PipelineResult result, run_pipeline(wanted, progress));
     DUBSAR_TRY(write_product(out, result, wanted.exa_profile, progress));
     return result;

@@ -55,7 +55,7 @@ class Room : public ::testing::Test {
     PipelineOptions options;
     options.import.path = folder_ / "scan.h5";
     options.detail = Detail::kScan;
-    options.trace_contact = false;
+    options.contact.reset();
     options.occlusion->rays = 4;
     return options;
   }
@@ -82,7 +82,7 @@ TEST_F(Room, WhatSurelyFitsIsNotLookedAtTwice) {
 
 TEST_F(Room, TheScanIsOpenedOnce) {
   PipelineOptions wanted = options();
-  wanted.trace_contact = true;
+  wanted.contact = ContactMesh::kPatches;
   wanted.import.voxel_size_mm = glm::dvec3(5.0);  // every opening warns of that
   SilentProgress progress;
   int warnings = 0;
@@ -135,7 +135,7 @@ TEST_F(Room, ADozenBudgetsAreKeptOrRefusedBeforeTheScanIsRead) {
   PipelineOptions run = options();
   run.import.path = folder_ / "scan256.h5";
   run.import.budget.scratch_folder = folder_;
-  run.trace_contact = true;
+  run.contact = ContactMesh::kPatches;
   const auto try_budgets = [&](Detail detail, const std::vector<std::uint64_t>& mib) {
     run.detail = detail;
     int made = 0;

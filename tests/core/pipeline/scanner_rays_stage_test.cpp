@@ -32,7 +32,7 @@ ReadTablet read_tablet(const char* scanner, Artefacts artefacts) {
   PipelineOptions options;
   options.import.path = path;
   options.detail = Detail::kScan;
-  options.trace_contact = false;
+  options.contact.reset();
   options.occlusion.reset();
   options.artefacts = artefacts;
   const Result<PipelineResult> result = run_pipeline(options, progress);

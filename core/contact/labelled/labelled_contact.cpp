@@ -1,4 +1,4 @@
-#include "core/contact/labelled_contact.h"
+#include "core/contact/labelled/labelled_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "core/base/system/log.h"
-#include "core/contact/clay_labels.h"
-#include "core/contact/contact_sheet.h"
 #include "core/contact/firmness.h"
-#include "core/contact/labelled_model.h"
-#include "core/extract/labelled_mesh.h"
+#include "core/contact/labelled/clay_labels.h"
+#include "core/contact/labelled/contact_sheet.h"
+#include "core/contact/labelled/labelled_model.h"
+#include "core/extract/labelled/labelled_mesh.h"
 #include "core/mesh/evidence.h"
 
 namespace dubsar {

@@ -1,4 +1,4 @@
-#include "core/extract/labelled_cell_table.h"
+#include "core/extract/labelled/labelled_cell_table.h"
 
 #include <algorithm>
 #include <bit>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/base/result.h"
-#include "core/extract/labelled_pieces.h"
+#include "core/extract/labelled/labelled_pieces.h"
 
 namespace dubsar {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/extract/taking_back.h"
+#include "core/extract/labelled/taking_back.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/extract/point_labels.h"
+#include "core/extract/labelled/point_labels.h"
 
 namespace dubsar {
 
@@ -19,7 +19,8 @@ class ContactEdges {
   /// Cost: a pass over the bits, all threads.
   explicit ContactEdges(const PointLabels& labels);
 
-  /// From clay of one to clay of the other, in the canonical order of surface_samples.h: rows (z, y), in each axis x, y, z, then x.
+  /// From clay of one to clay of the other, in the canonical order of surface_samples.h: rows (z, y), in each axis x,
+  /// y, z, then x.
   const std::vector<GridEdge>& all() const noexcept { return edges_; }
   /// Number of one of them.
   std::uint32_t number(std::int64_t axis, std::int64_t x, std::int64_t y, std::int64_t z) const noexcept;

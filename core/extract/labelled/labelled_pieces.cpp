@@ -1,4 +1,4 @@
-#include "core/extract/labelled_pieces.h"
+#include "core/extract/labelled/labelled_pieces.h"
 
 #include <algorithm>
 #include <bit>

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/extract/labelled_mesh.h"
+#include "core/extract/labelled/labelled_mesh.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/exact_triangles.h"
 

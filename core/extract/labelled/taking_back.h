@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/extract/safe_drawing.h"
+#include "core/extract/labelled/safe_drawing.h"
 
 namespace dubsar {
 

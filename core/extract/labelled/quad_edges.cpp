@@ -1,4 +1,4 @@
-#include "core/extract/quad_edges.h"
+#include "core/extract/labelled/quad_edges.h"
 
 #include <bit>
 

@@ -1,4 +1,4 @@
-#include "core/contact/clay_labels.h"
+#include "core/contact/labelled/clay_labels.h"
 
 #include <algorithm>
 #include <array>

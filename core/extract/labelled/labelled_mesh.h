@@ -9,9 +9,9 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
-#include "core/extract/contact_edges.h"
 #include "core/extract/edge_index.h"
-#include "core/extract/point_labels.h"
+#include "core/extract/labelled/contact_edges.h"
+#include "core/extract/labelled/point_labels.h"
 #include "core/extract/quad_mesh.h"
 
 namespace dubsar {
@@ -39,9 +39,6 @@ struct LabelledMesh {
 
   static constexpr std::uint8_t label_pair(PointLabel low, PointLabel high) noexcept {
     return static_cast<std::uint8_t>(static_cast<unsigned>(low) | static_cast<unsigned>(high) << 2);
-  }
-  bool has_label(std::uint32_t quad, PointLabel label) const noexcept {
-    return PointLabel(pairs[quad] & 3u) == label || PointLabel(pairs[quad] >> 2) == label;
   }
 };
 

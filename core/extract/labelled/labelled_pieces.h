@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/extract/labelled_cell_table.h"
+#include "core/extract/labelled/labelled_cell_table.h"
 
 namespace dubsar {
 

@@ -1,4 +1,4 @@
-#include "core/extract/point_labels.h"
+#include "core/extract/labelled/point_labels.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "core/contact/contact_sheet.h"
+#include "core/contact/labelled/contact_sheet.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ namespace {
 constexpr float kSheetReach = 1.8f;  ///< more than the half diagonal of a cell
 constexpr float kSameDistance = 1e-4f;
 
-/// The place of a triangle nearest to a point, and what it lies on: bit i: corner i has a share in it (Ericson 2005).
+/// The place of a triangle nearest to a point, and what it lies on: bit i: corner i has a share in it.
 struct NearestPlace {
   glm::vec3 place;
   unsigned corners = 7;
@@ -128,7 +128,7 @@ void follow_sheet(const ContactBand& band, const std::vector<float>& distances, 
     for (const std::uint32_t n : front)
       each_beside(band.point(n), [&](const glm::ivec3& q) {
         const std::uint32_t m = band.at(q);
-        if (m == ContactBand::kNone || known[m] || side[m] == side[n]) return;
+        if (m == ContactBand::kNone || known[m] || side[m] == side[n] || at_end(m)) return;
         known[m] = true;
         side[m] = side[n];
         next.push_back(m);

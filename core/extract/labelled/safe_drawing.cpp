@@ -1,4 +1,4 @@
-#include "core/extract/safe_drawing.h"
+#include "core/extract/labelled/safe_drawing.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 
 #include "core/base/result.h"
 #include "core/base/system/parallel.h"
-#include "core/extract/cell_cones.h"
-#include "core/extract/quad_envelope.h"
+#include "core/extract/labelled/cell_cones.h"
+#include "core/extract/labelled/quad_envelope.h"
 #include "core/mesh/exact_crossings.h"
 
 namespace dubsar {

@@ -1,4 +1,4 @@
-#include "core/extract/contact_edges.h"
+#include "core/extract/labelled/contact_edges.h"
 
 #include <algorithm>
 #include <tuple>

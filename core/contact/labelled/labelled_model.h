@@ -7,7 +7,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
-#include "core/extract/labelled_mesh.h"
+#include "core/extract/labelled/labelled_mesh.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {

@@ -1,6 +1,6 @@
 #pragma once
 // May an x-quad be two triangles? Only if both stay in its envelope, the four tetrahedra between its grid edge and
-// neighbouring corners: the envelopes of different grid edges have no inside in common (Ju and Udeshi 2006;
+// neighbouring corners: the envelopes of different grid edges have no inside in common ([Ju 2006];
 // docs/manifold.md).
 
 #include <array>

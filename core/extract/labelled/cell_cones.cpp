@@ -1,9 +1,9 @@
-#include "core/extract/cell_cones.h"
+#include "core/extract/labelled/cell_cones.h"
 
 #include <algorithm>
 #include <glm/common.hpp>
 
-#include "core/extract/safe_drawing.h"
+#include "core/extract/labelled/safe_drawing.h"
 
 namespace dubsar {
 namespace {

@@ -4,8 +4,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "core/extract/contact_edges.h"
 #include "core/extract/edge_index.h"
+#include "core/extract/labelled/contact_edges.h"
 #include "core/extract/quad_mesh.h"
 
 namespace dubsar {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/extract/bit_volume.h"
-#include "core/extract/labelled_cell_table.h"
+#include "core/extract/labelled/labelled_cell_table.h"
 
 namespace dubsar {
 

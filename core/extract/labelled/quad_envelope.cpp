@@ -1,4 +1,4 @@
-#include "core/extract/quad_envelope.h"
+#include "core/extract/labelled/quad_envelope.h"
 
 namespace dubsar {
 namespace {

@@ -1,11 +1,11 @@
-#include "core/contact/labelled_model.h"
+#include "core/contact/labelled/labelled_model.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <unordered_map>
 #include <utility>
 
-#include "core/extract/taking_back.h"
+#include "core/extract/labelled/taking_back.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/vertex_attributes.h"
 

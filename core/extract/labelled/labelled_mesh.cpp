@@ -1,4 +1,4 @@
-#include "core/extract/labelled_mesh.h"
+#include "core/extract/labelled/labelled_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "core/base/system/parallel.h"
 #include "core/extract/extract.h"
-#include "core/extract/quad_edges.h"
+#include "core/extract/labelled/quad_edges.h"
 #include "core/extract/row_kernels.h"
 
 namespace dubsar {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/contact/band.h"
-#include "core/extract/point_labels.h"
+#include "core/extract/labelled/point_labels.h"
 
 namespace dubsar {
 
