@@ -103,11 +103,12 @@ double energy_at(const Energy& energy, double t) {
   return sum;
 }
 
-/// Of what a shift by `t` steps takes off the energy, in all parts together, in its standard errors.
+/// How much less energy a shift by `t` steps leaves than the same shift the other way, in all parts together, in its
+/// standard errors: interpolation smooths both, which takes energy of streaks and of noise, too.
 double significance(const Energies& energies, double t) {
   double sum = 0.0, squares = 0.0;
   for (const Energy& part : energies) {
-    const double gain = energy_at(part, 0.0) - energy_at(part, t);
+    const double gain = energy_at(part, -t) - energy_at(part, t);
     sum += gain;
     squares += gain * gain;
   }
