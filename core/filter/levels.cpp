@@ -16,6 +16,8 @@ constexpr std::int64_t kCell = LevelShift::kCell;
 constexpr std::int64_t kClayReach = 3, kAirReach = 3;
 constexpr std::int64_t kLeastGap = 3;  ///< voxels of air along an axis: in narrower ones none is clear
 constexpr std::int64_t kHalo = kAirReach + 3;
+/// Between both sides of a profile, of the scan's: edges in strong scatter have .55, crumbs in foam .25.
+constexpr double kLeastContrast = 0.4;
 constexpr double kGauss = 12.0 / static_cast<double>(kCell);  ///< deviation, cells
 constexpr int kGaussReach = 5;                                ///< cells
 constexpr double kGlobalWeight = 1.0;  ///< samples, after averaging: a hundredth of what a flat piece of surface has
@@ -47,19 +49,25 @@ struct Line {
 
 class Profiles {
  public:
-  Profiles(const LevelOptions& options) : options_(options) {}
+  Profiles(const LevelOptions& options)
+      : options_(options),
+        least_contrast_(kLeastContrast * (static_cast<double>(options.clay) - static_cast<double>(options.air))) {}
 
   /// `clay` and `air` begin at the two ends of an edge that the surface crosses.
   void add(const Line& clay, const Line& air, float level, Sums& sums) const {
     std::int64_t deep = 1;
     while (deep < std::min(clay.count, kClayReach + 1) && clay.value(deep) >= level) ++deep;
-    // The last one before another surface is blurred with that.
-    for (std::int64_t i = 1; i < (deep <= kClayReach ? deep - 1 : deep); ++i)
-      take(clay.value(i), sums.clay, sums.clays);
+    // What ends sooner is no clay that could be measured: crumbs that noise makes of foam, say, whose level would make
+    // more of them.
+    if (deep <= kClayReach && deep < clay.count) return;
+    Sums here;
+    for (std::int64_t i = 1; i < deep; ++i) take(clay.value(i), here.clay, here.clays);
     std::int64_t wide = 1;
     while (wide < std::min(air.count, kAirReach + 2) && air.value(wide) < level) ++wide;
-    if (wide < kLeastGap) return;
-    for (std::int64_t i = 1; i < std::min(wide - 1, kAirReach + 1); ++i) take(air.value(i), sums.air, sums.airs);
+    if (wide >= kLeastGap)
+      for (std::int64_t i = 1; i < std::min(wide - 1, kAirReach + 1); ++i) take(air.value(i), here.air, here.airs);
+    if (here.clays > 0.0 && here.airs > 0.0 && here.clay / here.clays - here.air / here.airs < least_contrast_) return;
+    sums.add(here, 1.0);
   }
 
  private:
@@ -70,6 +78,7 @@ class Profiles {
     count += 1.0;
   }
   const LevelOptions& options_;
+  double least_contrast_;
 };
 
 /// Samples of all cells, with the surface where `shift` puts it.

@@ -129,5 +129,18 @@ TEST(Levels, ScaleOffsetAndThreadsChangeNothing) {
       }
 }
 
+TEST(Levels, CrumbsThatNoiseMakesOfFoamAreNoClay) {
+  // The ball stands in foam of .3: at the ball's lower end half way is .65, and nowhere less than .5.
+  const Volume<float> volume = ball(
+      [](const glm::dvec3& p) {
+        return Greys{p.z < 30.0 ? 0.3 : 0.0, 1.0};
+      },
+      0.14, false);
+  const LocalLevels levels = measure(volume);
+  ASSERT_FALSE(levels.shift.empty());
+  EXPECT_GT(levels.least, -0.04);
+  EXPECT_NEAR(levels.most, 0.15, 0.04);
+}
+
 }  // namespace
 }  // namespace dubsar
