@@ -297,7 +297,7 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
   DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
-  const Triangulation surface = triangulate(model.mesh, model.attributes.normals);
+  const Triangulation surface = triangulate(model.mesh, model.attributes.normals, 0, FacePoints::kNone);
   Traced traced{.band = band, .density = values, .dips = dips, .index = index, .graph = graph, .surface = surface};
   traced.faces = faces_of_band(model, index, band);
   traced.clays = clays;

@@ -11,14 +11,16 @@
 namespace dubsar {
 namespace {
 /// A mesh of samples without attributes, its frame moved and scaled.
-Result<SurfaceModel> bare_model(SurfaceSamples samples, const GridFrame& frame, const glm::dvec3& low, double scale,
+Result<SurfaceModel> bare_model(SurfaceSamples samples, const ExaHeader& header, const glm::dvec3& low, double scale,
                                 Progress& progress) {
   SurfaceModel model;
+  const GridFrame& frame = header.frame;
   model.frame = frame;
   model.frame.origin_vox = frame.input_vox_from_grid(low);
   model.frame.scale = frame.scale * scale;
   model.samples = std::move(samples);
   DUBSAR_ASSIGN(model.mesh, build_quad_mesh(model.samples, progress));
+  model.mesh.embedded = header.embedded;
   return model;
 }
 
@@ -38,7 +40,7 @@ Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& 
                 level, header.samples.edges);
   samples.offsets.assign(static_cast<std::size_t>(counts.edges), 1 << 15);
   samples.joined.assign(static_cast<std::size_t>(counts.faces), 0);
-  return bare_model(std::move(samples), header.frame, glm::dvec3(0.0), std::exp2(level), progress);
+  return bare_model(std::move(samples), header, glm::dvec3(0.0), std::exp2(level), progress);
 }
 
 Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Progress& progress) {
@@ -95,7 +97,7 @@ Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Pro
     own_faces.push_back(faces.chunks[i]);
   }
   DUBSAR_TRY(decode_samples(own_offsets, own_faces, samples, progress));
-  return bare_model(std::move(samples), header.frame, glm::dvec3(low[0], low[1], low[2]), 1.0, progress);
+  return bare_model(std::move(samples), header, glm::dvec3(low[0], low[1], low[2]), 1.0, progress);
 }
 
 }  // namespace dubsar

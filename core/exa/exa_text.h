@@ -42,6 +42,7 @@ struct ExaHeader {
   float isovalue = 0.0f;
   int offset_bits = 4;
   bool closed = true;
+  bool embedded = false;  ///< x-quads are cut as QuadMesh::embedded says
   std::int64_t vertices = 0, quads = 0;
   SampleCounts samples;  ///< as many offsets as edges, as many decisions as faces
   ExaNormals normals = ExaNormals::kNone;

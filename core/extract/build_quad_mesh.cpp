@@ -87,6 +87,7 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, const EdgeIndex&
                                                static_cast<std::uint64_t>(incidences) * 4));
 
   QuadMesh mesh;
+  mesh.embedded = true;
   parallel_for(3, 1, [&](std::int64_t part) {  // page faults are half of the cost of memory
     if (part == 0) resize_large(mesh.quads, static_cast<std::size_t>(quads));
     if (part == 1) resize_large(mesh.incident, static_cast<std::size_t>(incidences));

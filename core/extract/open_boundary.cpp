@@ -62,6 +62,7 @@ QuadMesh open_at_boundary(const QuadMesh& mesh, std::span<const std::uint8_t> in
   }
 
   QuadMesh opened;
+  opened.embedded = mesh.embedded;
   opened.positions.resize(first.back());
   opened.quads.resize(quads);
   for (std::uint32_t v = 0; v < vertices; ++v) {

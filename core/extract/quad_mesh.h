@@ -34,6 +34,9 @@ struct QuadMesh {
   std::vector<glm::vec3> positions;                 ///< dual vertices in grid coordinates, order (cell z, y, x, piece)
   std::vector<std::array<std::uint32_t, 4>> quads;  ///< first vertex of each corner; order: build_quad_mesh (extract.h)
   std::vector<DoubledCorner> doubled;               ///< sorted by (quad, corner); about one in a thousand quads
+  /// Vertices lie inside their cells, and triangulate() cuts x-quads so that none cross; false: of files that were
+  /// written with another cut.
+  bool embedded = false;
 
   /// Quads incident to vertex v: incident[first_incident[v] .. first_incident[v + 1]), rising.
   std::vector<std::uint32_t> first_incident;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "core/base/result.h"
 #include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
+#include "core/extract/cell_pieces.h"
 
 namespace dubsar {
 namespace {
@@ -77,32 +79,110 @@ void cut_between_opposite_corners(const Polygon& polygon, Triangle* out) {
   if (n == 6) *out++ = {vertex(start + 2), vertex(start + 4), vertex(start + 5)};
 }
 
+/// Cuts the polygons of a mesh one after the other: first counts, then writes.
+class Cutter {
+ public:
+  struct Count {
+    std::int64_t triangles = 0, steiner = 0;
+  };
+
+  Cutter(const QuadMesh& mesh, std::span<const glm::vec3> normals, FacePoints face_points)
+      : mesh_(mesh), normals_(normals) {
+    if (mesh.embedded) cuts_ = find_cuts(mesh, face_points);
+  }
+  const std::vector<FacePoint>& face_points() const { return cuts_.face_points; }
+
+  Count count(std::uint32_t q) const {
+    const QuadCut cut = cut_of(q);
+    if (cut != QuadCut::kFan && !mesh_.has_doubled(q)) return {2, 0};
+    const Polygon polygon = mesh_.polygon(q);
+    if (cut != QuadCut::kFan && !needs_steiner(polygon)) return {polygon.size - 2, 0};
+    Count count{polygon.size, 1};
+    if (cut == QuadCut::kFan && !face_points().empty())
+      for (int k = 0; k < polygon.size; ++k) count.triangles += point_of_side(polygon, k) != kNoPoint;
+    return count;
+  }
+
+  /// Puts the triangles of x-quad q behind `out`, and the centre of its fan, if it is one, at `centre`, whose id is
+  /// `centre_id`. Face points have ids from `first_face_id` on. Returns as count().
+  Count write(std::uint32_t q, Triangle* out, std::uint32_t centre_id, std::uint32_t first_face_id,
+              glm::vec3* centre) const {
+    const QuadCut cut = cut_of(q);
+    if (cut != QuadCut::kFan && !mesh_.has_doubled(q)) {
+      const auto& v = mesh_.quads[q];
+      const bool first =
+          cut == QuadCut::kFirst || (cut != QuadCut::kSecond && takes_first_diagonal(v, mesh_.positions, normals_));
+      out[0] = first ? Triangle{v[0], v[1], v[2]} : Triangle{v[1], v[2], v[3]};
+      out[1] = first ? Triangle{v[0], v[2], v[3]} : Triangle{v[1], v[3], v[0]};
+      return {2, 0};
+    }
+    const Polygon polygon = mesh_.polygon(q);
+    const auto n = static_cast<std::size_t>(polygon.size);
+    if (cut != QuadCut::kFan && !needs_steiner(polygon)) {
+      cut_between_opposite_corners(polygon, out);
+      return {polygon.size - 2, 0};
+    }
+    Triangle* const begin = out;
+    glm::dvec3 sum(0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::uint32_t from = polygon.vertex[k], to = polygon.vertex[(k + 1) % n];
+      const std::size_t point = cut == QuadCut::kFan ? point_of_side(polygon, static_cast<int>(k)) : kNoPoint;
+      sum += glm::dvec3(mesh_.positions[from]);
+      if (point == kNoPoint) {
+        *out++ = {from, to, centre_id};
+        continue;
+      }
+      const auto middle = static_cast<std::uint32_t>(first_face_id + point);
+      *out++ = {from, middle, centre_id};
+      *out++ = {middle, to, centre_id};
+    }
+    *centre =
+        cut == QuadCut::kFan ? point_at(place_polygon(mesh_, q).centre()) : glm::vec3(sum / static_cast<double>(n));
+    return {out - begin, 1};
+  }
+
+  static glm::vec3 point_at(const ExactPlace& place) {
+    return glm::vec3(glm::dvec3(place) / static_cast<double>(kExactSteps));
+  }
+
+ private:
+  static constexpr std::size_t kNoPoint = std::numeric_limits<std::size_t>::max();
+
+  QuadCut cut_of(std::uint32_t q) const { return mesh_.embedded ? cuts_.of_quad[q] : QuadCut::kFree; }
+  std::size_t point_of_side(const Polygon& polygon, int k) const {
+    const std::uint32_t a = polygon.vertex[static_cast<std::size_t>(k)],
+                        b = polygon.vertex[static_cast<std::size_t>((k + 1) % polygon.size)];
+    return find_face_point(face_points(), a, b).value_or(kNoPoint);
+  }
+
+  const QuadMesh& mesh_;
+  std::span<const glm::vec3> normals_;
+  QuadCuts cuts_;
+};
+
 }  // namespace
 
-Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals, std::size_t more) {
+Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals, std::size_t more,
+                          FacePoints face_points) {
   DUBSAR_CHECK(vertex_normals.empty() || vertex_normals.size() == mesh.positions.size());
   Triangulation result;
+  const Cutter cutter(mesh, vertex_normals, face_points);
   const std::int64_t quads = mesh.quad_count();
   const std::int64_t chunks = (quads + kQuadsPerChunk - 1) / kQuadsPerChunk;
   std::vector<std::int64_t> triangle_start(static_cast<std::size_t>(chunks)),
       steiner_start(static_cast<std::size_t>(chunks));
   parallel_chunks(quads, kQuadsPerChunk, [&](std::int64_t begin, std::int64_t end) {
-    std::int64_t triangles = 0, steiner = 0;
-    for (std::int64_t i = begin; i < end; ++i) {
-      const auto q = static_cast<std::uint32_t>(i);
-      if (!mesh.has_doubled(q)) {
-        triangles += 2;
-        continue;
-      }
-      const Polygon polygon = mesh.polygon(q);
-      const bool star = needs_steiner(polygon);
-      triangles += star ? polygon.size : polygon.size - 2;
-      steiner += star;
+    Cutter::Count sum;
+    for (std::int64_t q = begin; q < end; ++q) {
+      const Cutter::Count here = cutter.count(static_cast<std::uint32_t>(q));
+      sum.triangles += here.triangles;
+      sum.steiner += here.steiner;
     }
-    triangle_start[static_cast<std::size_t>(begin / kQuadsPerChunk)] = triangles;
-    steiner_start[static_cast<std::size_t>(begin / kQuadsPerChunk)] = steiner;
+    triangle_start[static_cast<std::size_t>(begin / kQuadsPerChunk)] = sum.triangles;
+    steiner_start[static_cast<std::size_t>(begin / kQuadsPerChunk)] = sum.steiner;
   });
-  const std::int64_t triangles = exclusive_scan(triangle_start), steiner = exclusive_scan(steiner_start);
+  const std::int64_t triangles = exclusive_scan(triangle_start), centres = exclusive_scan(steiner_start),
+                     steiner = centres + static_cast<std::int64_t>(cutter.face_points().size());
   DUBSAR_CHECK(triangles < std::int64_t{1} << 32 && mesh.vertex_count() + steiner < std::int64_t{1} << 32);
   result.triangles.reserve(static_cast<std::size_t>(triangles) + more);
   resize_large(result.triangles, static_cast<std::size_t>(triangles));
@@ -110,38 +190,23 @@ Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> verte
   resize_large(result.first_triangle, static_cast<std::size_t>(quads) + 1);
   result.first_triangle.back() = static_cast<std::uint32_t>(triangles);
 
+  const auto first_face_id = static_cast<std::uint32_t>(mesh.vertex_count() + centres);
   parallel_chunks(quads, kQuadsPerChunk, [&](std::int64_t begin, std::int64_t end) {
     auto triangle = static_cast<std::size_t>(triangle_start[static_cast<std::size_t>(begin / kQuadsPerChunk)]);
-    auto star = static_cast<std::size_t>(steiner_start[static_cast<std::size_t>(begin / kQuadsPerChunk)]);
+    auto centre = static_cast<std::size_t>(steiner_start[static_cast<std::size_t>(begin / kQuadsPerChunk)]);
     for (std::int64_t i = begin; i < end; ++i) {
       const auto q = static_cast<std::uint32_t>(i);
       result.first_triangle[q] = static_cast<std::uint32_t>(triangle);
-      Triangle* out = result.triangles.data() + triangle;
-      if (!mesh.has_doubled(q)) {
-        const auto& v = mesh.quads[q];
-        const bool first = takes_first_diagonal(v, mesh.positions, vertex_normals);
-        out[0] = first ? Triangle{v[0], v[1], v[2]} : Triangle{v[1], v[2], v[3]};
-        out[1] = first ? Triangle{v[0], v[2], v[3]} : Triangle{v[1], v[3], v[0]};
-        triangle += 2;
-        continue;
-      }
-      const Polygon polygon = mesh.polygon(q);
-      const auto n = static_cast<std::size_t>(polygon.size);
-      if (!needs_steiner(polygon)) {
-        cut_between_opposite_corners(polygon, out);
-        triangle += n - 2;
-        continue;
-      }
-      const auto centre = static_cast<std::uint32_t>(mesh.positions.size() + star);
-      glm::dvec3 sum(0.0);
-      for (std::size_t k = 0; k < n; ++k) {
-        sum += glm::dvec3(mesh.positions[polygon.vertex[k]]);
-        out[k] = {polygon.vertex[k], polygon.vertex[(k + 1) % n], centre};
-      }
-      result.steiner[star++] = glm::vec3(sum / static_cast<double>(n));
-      triangle += n;
+      const Cutter::Count written = cutter.write(q, result.triangles.data() + triangle,
+                                                 static_cast<std::uint32_t>(mesh.positions.size() + centre),
+                                                 first_face_id, result.steiner.data() + centre);
+      triangle += static_cast<std::size_t>(written.triangles);
+      centre += static_cast<std::size_t>(written.steiner);
     }
   });
+  result.face_points = cutter.face_points();
+  for (std::size_t k = 0; k < result.face_points.size(); ++k)
+    result.steiner[static_cast<std::size_t>(centres) + k] = Cutter::point_at(result.face_points[k].place);
   return result;
 }
 

@@ -1,7 +1,7 @@
 #include "core/mesh/exact_triangles.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
 #include <glm/common.hpp>
 
 #include "core/base/system/parallel.h"
@@ -120,13 +120,6 @@ bool fold(const ExactPlace& u, const ExactPlace& v, const ExactPlace& a, const E
 
 }  // namespace
 
-ExactPlace exact_place(const glm::vec3& point) noexcept {
-  ExactPlace place;
-  for (int i = 0; i < 3; ++i)
-    place[i] = static_cast<std::int64_t>(std::floor(static_cast<double>(point[i]) * kExactSteps + 0.5));
-  return place;
-}
-
 std::vector<ExactPlace> exact_places(std::span<const glm::vec3> points) {
   std::vector<ExactPlace> places(points.size());
   parallel_for(static_cast<std::int64_t>(points.size()), kPlacesGrain, [&](std::int64_t i) {
@@ -164,14 +157,20 @@ bool segment_meets_triangle(const ExactPlace& from, const ExactPlace& to, const 
 }
 
 bool triangles_touch(std::span<const ExactPlace> places, const Triangle& a, const Triangle& b) noexcept {
-  const std::array<ExactPlace, 3> pa{places[a[0]], places[a[1]], places[a[2]]},
-      pb{places[b[0]], places[b[1]], places[b[2]]};
+  const auto triangle = [&](const Triangle& t) {
+    return ExactTriangle{{places[t[0]], places[t[1]], places[t[2]]}, {t[0], t[1], t[2]}};
+  };
+  return triangles_touch(triangle(a), triangle(b));
+}
+
+bool triangles_touch(const ExactTriangle& a, const ExactTriangle& b) noexcept {
+  const std::array<ExactPlace, 3>&pa = a.place, &pb = b.place;
   if (!boxes_meet(pa, pb)) return false;
   std::array<std::size_t, 3> of_a{}, of_b{};  // where the ids stand that they share
   std::size_t shared = 0;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3 && shared < 3; ++j)
-      if (a[i] == b[j]) {
+      if (a.id[i] == b.id[j]) {
         of_a[shared] = i;
         of_b[shared++] = j;
         break;

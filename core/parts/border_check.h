@@ -13,8 +13,8 @@ namespace dubsar {
 
 /// Middles of the edges at vertices of borders and patches that not exactly two triangles of a body run along, once in
 /// each direction; empty: the `bodies` (PartitionTable::body_of()) of a model whose dual surface is closed are closed
-/// 2-manifolds. `surface`: triangulate() of its mesh. Patches inside a body count as MeshOptions says: not. The same
-/// for any number of threads. About 0.2 us a triangle of patches.
+/// 2-manifolds. `surface`: triangulate() of its mesh, without face points. Patches inside a body count as MeshOptions
+/// says: not. The same for any number of threads. About 0.2 us a triangle of patches.
 std::vector<glm::vec3> open_borders(const SurfaceModel& model, const Triangulation& surface,
                                     std::span<const PartitionId> bodies);
 

@@ -21,7 +21,8 @@ namespace {
 constexpr std::int64_t kModelGrain = 1 << 14;
 constexpr std::uint8_t kNotSelected = PartitionTable::kNone;
 
-/// Triangles are counted in 32 bits; a polygon with doubled corners gives at most four more each.
+/// Triangles are counted in 32 bits; a polygon with doubled corners gives at most four more each. (The few fans beside
+/// them have room: triangulate() looks again.)
 Result<void> check_size(const QuadMesh& mesh) {
   const std::int64_t most = 2 * mesh.quad_count() + 4 * static_cast<std::int64_t>(mesh.doubled.size());
   if (most >= (std::int64_t{1} << 32) / 3)
@@ -93,6 +94,7 @@ Result<Selection> select(const SurfaceModel& model, const MeshOptions& options) 
 void add_quads(const SurfaceModel& model, const Selection& selection, Triangulation triangulation, TriangleSoup& soup) {
   const std::size_t quads = model.mesh.quads.size();
   soup.added = std::move(triangulation.steiner);
+  soup.bends = std::move(triangulation.face_points);
   for (auto* const labels : {&soup.partition, &soup.group}) {
     labels->reserve(triangulation.triangles.capacity());
     labels->resize(triangulation.triangles.size());
@@ -136,6 +138,24 @@ std::size_t patch_triangles(const SurfaceModel& model) {
   return count;
 }
 
+/// Calls add(triangle) for a triangle, or for those that it is cut into where sides of x-quads that it shares have
+/// points, whose ids begin with first_bend.
+template <class Add>
+void cut_at_bends(const TriangleSoup& soup, std::size_t first_bend, std::uint32_t dual, const Triangle& t,
+                  const Add& add) {
+  for (std::size_t i = 0; i < 3 && !soup.bends.empty(); ++i) {
+    const std::uint32_t a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
+    if (a >= dual || b >= dual) continue;
+    const auto point = find_face_point(soup.bends, a, b);
+    if (!point) continue;
+    const auto middle = static_cast<std::uint32_t>(first_bend + *point);
+    cut_at_bends(soup, first_bend, dual, {a, middle, c}, add);
+    cut_at_bends(soup, first_bend, dual, {middle, b, c}, add);
+    return;
+  }
+  add(t);
+}
+
 void add_patches(const SurfaceModel& model, const Selection& selection, TriangleSoup& soup) {
   const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
   soup.first_patch_triangle = soup.triangles.size();
@@ -152,9 +172,11 @@ void add_patches(const SurfaceModel& model, const Selection& selection, Triangle
       for (std::uint32_t& v : t)
         if (v >= dual) v = v - dual + base;
       if (reversed) std::swap(t[1], t[2]);
-      soup.triangles.push_back(t);
-      soup.partition.push_back(id);
-      soup.group.push_back(selection.group[id]);
+      cut_at_bends(soup, soup.first_patch_vertex - soup.bends.size(), dual, t, [&](const Triangle& piece) {
+        soup.triangles.push_back(piece);
+        soup.partition.push_back(id);
+        soup.group.push_back(selection.group[id]);
+      });
     }
   };
   for (const FillPatch& patch : model.patches) {
@@ -260,8 +282,8 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
     return fail(ErrorKind::kTryAgain, "surface_model: {} vertices found, expected at most 2^31", first_copy);
   const VertexAttributes added = attributes_of_added(model, soup, options);
   std::vector<std::uint8_t> border = border_vertices(model, selection.group);
-  border.resize(soup.first_patch_vertex, 0);
-  border.resize(first_copy, 1);  // a patch may touch itself, too
+  border.resize(soup.first_patch_vertex - soup.bends.size(), 0);
+  border.resize(first_copy, 1);  // parts may meet at a point of a face, and a patch may touch itself, too
   DUBSAR_ASSIGN(const std::vector<std::uint32_t> copies,
                 split_fans(soup, border, static_cast<std::uint32_t>(first_copy), options.progress));
   const Numbering numbering = number_vertices(soup, first_copy, copies);

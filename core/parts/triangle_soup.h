@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/system/parallel.h"
+#include "core/extract/quad_cuts.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {
@@ -19,6 +20,8 @@ struct TriangleSoup {
   std::vector<std::uint8_t> partition, group;  ///< of each triangle
   std::vector<glm::vec3> added;                ///< positions of ids from dual_count on
   std::vector<std::uint8_t> patch_evidence;    ///< of the added vertices from first_patch_vertex on (evidence.h)
+  std::vector<FacePoint> bends;                ///< sides of x-quads with a point; the ids of these are the last before
+                                               ///< first_patch_vertex
   std::size_t first_patch_triangle = 0;
   std::size_t first_patch_vertex = 0;  ///< an id
 };

@@ -311,7 +311,7 @@ Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progre
   if (model.patches.empty()) return report;
   progress.begin("untangle", kMostSplits + 1, "round");
   Triangulation own;
-  if (help.surface == nullptr) own = triangulate(model.mesh, model.attributes.normals);
+  if (help.surface == nullptr) own = triangulate(model.mesh, model.attributes.normals, 0, FacePoints::kNone);
   Tangle tangle(model, help.surface != nullptr ? *help.surface : own, help.home, step);
   const bool known = !help.settled.empty();
   auto pairs = known ? tangle.unsettled_crossings(help.settled, help.aside) : tangle.crossings();

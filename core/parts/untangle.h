@@ -27,7 +27,8 @@ struct UntangleReport {
 };
 
 struct UntangleHelp {
-  const Triangulation* surface = nullptr;  ///< triangulate() of the model's mesh, where somebody has it
+  const Triangulation* surface =
+      nullptr;  ///< triangulate() of the model's mesh, without face points, where somebody has it
   /// Where the vertices that the first patch added have come from: near what still crosses they go back there
   /// (leash.h), and are moved from there once more.
   std::span<const glm::vec3> home{};

@@ -9,6 +9,7 @@
 
 #include "core/base/system/parallel_gather.h"
 #include "core/exa/values/exact.h"
+#include "core/extract/cell_box.h"
 
 namespace dubsar {
 namespace {
@@ -139,7 +140,9 @@ std::optional<glm::ivec3> steps_back(const QuadMesh& wanted, std::uint32_t v, co
     for (int k = first; k <= last; ++k) {
       glm::ivec3 steps(0);
       steps[axis] = sign * k;
-      if (distance_to_fan(wanted, v, glm::dvec3(escaped(from, steps))) <= near) return steps;
+      const glm::vec3 place = escaped(from, steps);
+      if (wanted.embedded && kept_in_cell(from, place) != place) break;
+      if (distance_to_fan(wanted, v, glm::dvec3(place)) <= near) return steps;
     }
   }
   return std::nullopt;
@@ -211,7 +214,8 @@ void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, doub
     const auto v = static_cast<std::size_t>(i);
     if (!(error[v] > limit)) return;
     auto k = steps_back(wanted, static_cast<std::uint32_t>(v), normals[v], positions[v], 0.5 * bound);
-    if (!k) k = escape_to(positions[v], wanted.positions[v]);
+    const glm::vec3& own = wanted.positions[v];
+    if (!k) k = escape_to(positions[v], wanted.embedded ? kept_in_cell(positions[v], own) : own);
     if (!k) return;
     positions[v] = escaped(positions[v], *k);
     error[v] = static_cast<float>(distance_to_fan(wanted, static_cast<std::uint32_t>(v), glm::dvec3(positions[v])));

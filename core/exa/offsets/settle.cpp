@@ -12,7 +12,10 @@
 #include "core/exa/offsets/offset_fit.h"
 #include "core/exa/values/attributes.h"
 #include "core/exa/values/exact.h"
+#include "core/extract/cell_box.h"
 #include "core/extract/extract.h"
+#include "core/extract/piece_moves.h"
+#include "core/extract/quad_cuts.h"
 #include "core/relief/curvature/shape_class.h"
 #include "core/relief/smoothing/face_median.h"
 #include "core/relief/smoothing/smooth.h"
@@ -64,6 +67,17 @@ Result<void> fit_offsets(SurfaceModel& model, std::span<const glm::vec3> places,
   progress.end();
   return {};
 }
+
+/// At the few cells where polygons touch vertices escape to places where they do not.
+Result<PieceMoves> part_settled_pieces(SurfaceModel& model, Progress& progress) {
+  if (find_cuts(model.mesh).touching.empty()) return PieceMoves{};
+  DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
+  return part_pieces(model.mesh, base.positions, [&](std::uint32_t v, const glm::vec3& wanted) {
+    const glm::vec3& from = base.positions[v];
+    const auto k = escape_to(from, kept_in_cell(from, wanted));
+    return k ? escaped(from, *k) : from;
+  });
+}
 }  // namespace
 
 std::uint64_t settled_sum(const SurfaceModel& model) {
@@ -107,6 +121,10 @@ Result<SettleStats> settle_for_exa(SurfaceModel& model, const SettleOptions& opt
     fitted = {};
     let_escape(model.mesh, normals, options.max_error, positions, stats);
     model.mesh.positions = std::move(positions);
+  }
+  if (model.mesh.embedded) {
+    DUBSAR_ASSIGN(const PieceMoves moves, part_settled_pieces(model, progress));
+    stats.touching_cells = moves.left;
   }
   if (options.exact_normals || attributes.normals.empty()) return stats;
   DUBSAR_ASSIGN(std::vector<glm::vec3> normals, recomputed_normals(model.mesh, progress));

@@ -23,15 +23,17 @@ struct SettleStats {
   double escaped_fraction = 0.0;        ///< vertices that the offsets do not bring near enough
   double normal_error_deg = 0.0;        ///< mean angle between normals before and after
   double shape_changed_fraction = 0.0;  ///< vertices whose class of shape is another one
+  std::int64_t touching_cells = 0;      ///< where polygons touch each other all the same (part_pieces())
 };
 
 /// Chooses offsets of samples.offset_bits such that the vertices that follow from them (build_quad_mesh) lie on the
 /// surface of mesh.positions: none further than max_error, 95 % within half of it; the few that cannot escape to a
-/// place of their own (kEscapeStep). Vertices slide along the surface by up to half a grid step. Then normals and
+/// place of their own (kEscapeStep), inside its cell where the mesh is embedded; there those of cells of several pieces
+/// whose polygons would cross do, too. Vertices slide along the surface by up to half a grid step. Then normals and
 /// curvatures are those of recomputed_normals() and principal_curvatures(), where the model has any and exact_normals
 /// is off, and shape classes those of the curvatures; settle_light() settles ambient light. All other attributes stay.
-/// A settled model stays as it is, to the last bit. kUsage: max_error is not positive. Deterministic for any thread
-/// count; about 3 us a vertex and thread.
+/// A settled model stays as it is, to the last bit, unless it crosses itself. kUsage: max_error is not positive.
+/// Deterministic for any thread count; about 3 us a vertex and thread.
 Result<SettleStats> settle_for_exa(SurfaceModel& model, const SettleOptions& options, Progress& progress);
 
 /// A hash of the bits of positions, normals and curvatures, never 0: those that settle_for_exa() left are still there

@@ -6,6 +6,7 @@
 
 #include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
+#include "core/extract/cell_box.h"
 #include "core/relief/smoothing/quad_sums.h"
 #include "core/relief/smoothing/scatter_blocks.h"
 
@@ -102,6 +103,7 @@ void move_vertices(const QuadMesh& mesh, std::span<const glm::vec3> start, const
       const float length = glm::length(moved);
       if (length > max_displacement) moved *= max_displacement / length;
       to[index(v)] = start[index(v)] + moved;
+      if (mesh.embedded) to[index(v)] = kept_in_cell(start[index(v)], to[index(v)]);
     }
   });
 }

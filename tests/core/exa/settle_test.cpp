@@ -5,6 +5,9 @@
 #include "core/exa/offsets/offset_choice.h"
 #include "core/exa/offsets/offsets.h"
 #include "core/exa/values/exact.h"
+#include "core/extract/triangulate.h"
+#include "core/mesh/exact_crossings.h"
+#include "core/mesh/mesh_check.h"
 #include "core/relief/curvature/curvature.h"
 #include "core/relief/smoothing/smooth.h"
 #include "tests/core/exa/exa_test_models.h"
@@ -26,6 +29,7 @@ SurfaceModel smoothed_model(unsigned seed) {
     mesh.positions[v] = sum / static_cast<float>(mesh.quads_of(static_cast<std::uint32_t>(v)).size());
   }
   model.attributes = {};
+  model.mesh.embedded = false;  // vertices have left their cells
   return model;
 }
 
@@ -103,6 +107,7 @@ TEST(ExaSettle, VerticesThatLeaveTakeTheFewestStepsThatBringThemBack) {
   SurfaceModel model = sample_model({14, 12, 13}, Kind::kBlob, 3);
   const QuadMesh base = build_quad_mesh(model.samples, progress).value();
   QuadMesh wanted = base;
+  wanted.embedded = false;  // vertices leave their cells
   for (glm::vec3& p : wanted.positions) p += glm::vec3(0.02f, -0.03f, 0.1f);
   std::vector<glm::vec3> moved = base.positions;
   SettleStats stats;
@@ -126,6 +131,43 @@ TEST(ExaSettle, VerticesThatLeaveTakeTheFewestStepsThatBringThemBack) {
   EXPECT_GT(short_ones, gone * 9 / 10);
   EXPECT_GT(looked, 5);
   EXPECT_NEAR(stats.escaped_fraction, double(gone) / double(moved.size()), 1e-12);
+}
+
+TEST(ExaSettle, ASettledSurfaceCrossesItselfNowhereAlsoWhenItIsReadAgain) {
+  for (const unsigned seed : {51u, 52u}) {
+    Volume<float> volume({26, 22, 24});
+    std::mt19937 random(seed);
+    for (std::int64_t z = 2; z < 22; ++z)
+      for (std::int64_t y = 2; y < 20; ++y)
+        for (std::int64_t x = 2; x < 24; ++x)
+          volume.at(x, y, z) = 8.0f - glm::length(glm::vec3(glm::i64vec3(x, y, z)) - glm::vec3(12.5f, 10.5f, 11.5f)) +
+                               (seed == 51 ? 3.0f : 30.0f) * (static_cast<float>(random() >> 8) * 0x1p-24f - 0.5f);
+    VolumeSource source(volume);
+    SilentProgress progress;
+    SurfaceModel model;
+    model.samples = sample_surface(source, {.isovalue = 0.125f}, progress).value();
+    model.mesh = build_quad_mesh(model.samples, progress).value();
+    ASSERT_TRUE(smooth(model.mesh, model.attributes.normals, {}, progress));
+    const auto stats = settle_for_exa(model, {}, progress);
+    ASSERT_TRUE(stats) << stats.error().message;
+    EXPECT_EQ(stats->touching_cells, 0);
+    const TriMesh mesh = make_tri_mesh(model).value();
+    EXPECT_EQ(check_exactly(mesh.positions, mesh.triangles), ExactCheck{}) << seed;
+    EXPECT_TRUE(check_mesh(mesh.positions, mesh.triangles).watertight()) << seed;
+    const std::vector<ExaBlock> blocks = encode_exa(model, progress).value();
+    const SurfaceModel read = decode_exa(file_of(blocks), progress).value();
+    EXPECT_TRUE(read.mesh.embedded);
+    EXPECT_EQ(make_tri_mesh(read).value().triangles, mesh.triangles) << seed;
+  }
+}
+
+TEST(ExaSettle, AFileThatNamesNoCutIsCutAsBefore) {
+  SilentProgress progress;
+  SurfaceModel model = sample_model({14, 12, 13}, Kind::kNoise, 3);
+  model.mesh.embedded = false;
+  const SurfaceModel read = decode_exa(file_of(encode_exa(model, progress).value()), progress).value();
+  EXPECT_FALSE(read.mesh.embedded);
+  EXPECT_EQ(triangulate(read.mesh, {}).triangles, triangulate(model.mesh, {}).triangles);
 }
 
 /// A settled model with normals and curvatures.
