@@ -81,7 +81,8 @@ class ClayRuns {
 
 }  // namespace
 
-PointLabels label_clay(const BitVolume& inside, const ContactBand& band, const std::vector<ClaySide>& side) {
+PointLabels label_clay(const BitVolume& inside, const ContactBand& band, const std::vector<ClaySide>& side,
+                       BitVolume* unasked) {
   BitVolume in_band(inside.dims());
   PointLabels labels(inside);
   for (std::uint32_t n = 0; n < band.nodes.size(); ++n) {
@@ -101,6 +102,8 @@ PointLabels label_clay(const BitVolume& inside, const ContactBand& band, const s
   runs.each([&](std::uint32_t i, const ClayRuns::Run& run, std::int64_t y, std::int64_t z) {
     const auto& [tablet, envelope] = votes[runs.piece(i)];
     if (envelope > tablet) labels.set_envelope_run(run.begin, run.end, y, z);
+    if (unasked != nullptr && envelope + tablet == 0)
+      for (std::int32_t x = run.begin; x < run.end; ++x) unasked->set(x, y, z, true);
   });
   labels.compact();
   return labels;

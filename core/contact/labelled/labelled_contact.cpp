@@ -169,6 +169,52 @@ class NearestEvidence {
   std::map<std::array<int, 3>, std::vector<std::uint32_t>> cubes_;
 };
 
+/// The faces of the surface belong to whose clay is behind them, so that parts are closed: those of tablet and envelope
+/// all, but where nothing says whose clay it is; those of a cavity that the contact reaches.
+void give_faces_to_labels(SurfaceModel& model, const LabelledMesh& labelled, const BitVolume& unasked) {
+  const PartitionId tablet = model.partitions.find(PartitionKind::kTablet)->id,
+                    inside = model.partitions.find(PartitionKind::kEnvelopeInside)->id;
+  const auto kind_of = [&](std::uint32_t q) { return model.partitions[model.quad_partition[q]].kind; };
+  const auto is_envelope = [](PartitionKind kind) {
+    return kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
+  };
+  const auto own = [&](std::uint32_t q) {
+    return PointLabel(labelled.pairs[q] >> 2) == PointLabel::kTablet ? tablet : inside;
+  };
+  std::vector<std::uint32_t> reached;
+  const auto each_vertex = [&](std::uint32_t q, const auto& visit) {
+    const Polygon polygon = labelled.mesh.polygon(q);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size); ++k) visit(polygon.vertex[k]);
+  };
+  for (std::uint32_t q = 0; q < labelled.first_contact; ++q) {
+    const PartitionKind kind = kind_of(q);
+    if (kind == PartitionKind::kPores) {
+      bool at_contact = false;
+      each_vertex(q, [&](std::uint32_t v) {
+        at_contact = at_contact || labelled.mesh.quads_of(v).back() >= labelled.first_contact;
+      });
+      if (at_contact) reached.push_back(q);
+      continue;
+    }
+    if (kind != PartitionKind::kTablet && !is_envelope(kind)) continue;
+    const GridEdge& e = labelled.edges[q];
+    glm::ivec3 clay(e.x, e.y, e.z);
+    if (clay.x < 0 || clay.y < 0 || clay.z < 0 || !model.samples.signs.get(clay.x, clay.y, clay.z))
+      clay += unit_step(e.axis);
+    if (unasked.get(clay.x, clay.y, clay.z)) continue;
+    if ((own(q) == tablet) != (kind == PartitionKind::kTablet)) model.quad_partition[q] = own(q);
+  }
+  for (const std::uint32_t q : reached) model.quad_partition[q] = own(q);
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    each_vertex(reached[i], [&](std::uint32_t v) {
+      for (const std::uint32_t q : labelled.mesh.quads_of(v)) {
+        if (q >= labelled.first_contact || kind_of(q) != PartitionKind::kPores) continue;
+        model.quad_partition[q] = own(q);
+        reached.push_back(q);
+      }
+    });
+}
+
 }  // namespace
 
 Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress) {
@@ -197,7 +243,8 @@ Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const Di
   keep_whole(clay.band, clay.pores, side);
   for (std::size_t n = 0; n < side.size(); ++n) report.relabelled += side[n] != clay.side[n];
   report.pockets = relabel_faces(model, clay.graph, clay.faces, side);
-  const PointLabels labels = label_clay(model.samples.signs, clay.band, side);
+  BitVolume unasked(model.samples.dims);
+  const PointLabels labels = label_clay(model.samples.signs, clay.band, side, &unasked);
   const ContactEdges edges(labels);
   const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
     const float a = distances[n], b = distances[m];
@@ -208,6 +255,7 @@ Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const Di
   DUBSAR_ASSIGN(const LabelledMesh labelled,
                 build_labelled_mesh(model.samples, clay.index, labels, edges, offsets, progress));
   report.cells = static_cast<std::int64_t>(labelled.cells.size());
+  give_faces_to_labels(model, labelled, unasked);
   if (progress.cancelled()) return cancelled_error();
 
   const NearestEvidence known(sheet.mesh, evidence);

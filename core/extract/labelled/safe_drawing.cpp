@@ -9,8 +9,8 @@
 #include "core/base/result.h"
 #include "core/base/system/parallel.h"
 #include "core/extract/labelled/cell_cones.h"
+#include "core/extract/labelled/near_pairs.h"
 #include "core/extract/labelled/quad_envelope.h"
-#include "core/mesh/exact_crossings.h"
 
 namespace dubsar {
 namespace {
@@ -54,7 +54,7 @@ class Drawer final : public ConePlaces {
     draw();
     std::vector<std::uint8_t> wanted = triangles_of([&](std::uint32_t v) { return shares_cell(v); });
     for (int round = 0; round < kMostDrawings; ++round) {
-      const TrianglePairs pairs = touching_pairs(drawing_.places, drawing_.triangles, wanted);
+      const TrianglePairs pairs = touching_pairs_near(drawing_.places, drawing_.triangles, wanted);
       drawing_.crossing_pairs = static_cast<std::int64_t>(pairs.size());
       if (pairs.empty()) break;
       std::vector<std::uint32_t> cells;  // first vertices

@@ -5,7 +5,7 @@
 
 #include "core/base/result.h"
 #include "core/base/system/parallel.h"
-#include "core/mesh/exact_crossings.h"
+#include "core/extract/labelled/near_pairs.h"
 
 namespace dubsar {
 namespace {
@@ -57,7 +57,7 @@ TakenBack take_back(const SafeDrawing& safe, std::vector<ExactPlace>& places) {
   for (std::size_t i = 0; i < places.size(); ++i) changed[i] = places[i] != safe.places[i];
   for (;;) {
     const std::vector<std::uint8_t> wanted = triangles_at(safe, changed);
-    const TrianglePairs pairs = touching_pairs(places, safe.triangles, wanted);
+    const TrianglePairs pairs = touching_pairs_near(places, safe.triangles, wanted);
     std::vector<std::uint32_t> quads;
     for (const auto& pair : pairs)
       for (const std::uint32_t t : pair) quads.push_back(quad_with(safe, t));

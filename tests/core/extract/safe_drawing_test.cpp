@@ -3,6 +3,7 @@
 #include <glm/vec4.hpp>
 #include <string>
 
+#include "core/extract/labelled/near_pairs.h"
 #include "core/extract/labelled/quad_envelope.h"
 #include "core/extract/labelled/taking_back.h"
 #include "core/mesh/exact_crossings.h"
@@ -83,6 +84,20 @@ TEST(SafeDrawing, LabellingsHaveAPlaceWithCrossingsInTheMiddle) {
   const SafeDrawing drawing = draw_safely(labelled, labelled.mesh.positions, middles, triangulate(labelled.mesh, {}));
   EXPECT_EQ(drawing.crossing_pairs, 0);
   EXPECT_EQ(drawing.last_resorts, 0);
+}
+
+TEST(NearPairs, AreThoseOfAllTriangles) {
+  const LabelledScene scene = std::move(LabelledScene(in_air(random_labels({20, 20, 20}, 19))).draw(20));
+  const LabelledMesh labelled = scene.build();
+  const Triangulation cut = triangulate(labelled.mesh, {});
+  const std::vector<ExactPlace> places = exact_places(all_positions(labelled.mesh, cut));
+  for (const std::size_t every : {1u, 3u, 50u, 4000u}) {
+    std::vector<std::uint8_t> wanted(cut.triangles.size());
+    for (std::size_t t = 0; t < wanted.size(); t += every) wanted[t] = 1;
+    const TrianglePairs all = touching_pairs(places, cut.triangles, wanted);
+    EXPECT_TRUE(every > 3 || !all.empty());
+    EXPECT_TRUE(touching_pairs_near(places, cut.triangles, wanted) == all) << every;
+  }
 }
 
 TEST(SafeDrawing, WhatIsSmoothedAsOneLikesIsTakenBackUntilNothingTouches) {
