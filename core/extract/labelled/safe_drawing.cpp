@@ -10,7 +10,7 @@
 #include "core/base/system/parallel.h"
 #include "core/extract/labelled/cell_cones.h"
 #include "core/extract/labelled/near_pairs.h"
-#include "core/extract/labelled/quad_envelope.h"
+#include "core/extract/quad_envelope.h"
 
 namespace dubsar {
 namespace {
@@ -143,9 +143,8 @@ class Drawer final : public ConePlaces {
                                        drawing_.places[corners[2]], drawing_.places[corners[3]]};
     const Triangle& t = preferred.triangles[preferred.first_triangle[q]];
     const bool first = std::find(t.begin(), t.end(), corners[0]) != t.end();  // 012 or 123
-    const auto fits = [&](bool diagonal) {
-      return diagonal_in_envelope(at, edge_start(q), labelled_.edges[q].axis, diagonal);
-    };
+    const unsigned allowed = allowed_diagonals(at, {edge_start(q), labelled_.edges[q].axis, true, false});
+    const auto fits = [&](bool diagonal) { return (allowed & (diagonal ? 1u : 2u)) != 0; };
     if (fits(first)) return first ? Cut::kFirstDiagonal : Cut::kSecondDiagonal;
     if (fits(!first)) return first ? Cut::kSecondDiagonal : Cut::kFirstDiagonal;
     return Cut::kFan;

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "core/extract/labelled/near_pairs.h"
-#include "core/extract/labelled/quad_envelope.h"
 #include "core/extract/labelled/taking_back.h"
+#include "core/extract/quad_envelope.h"
 #include "core/mesh/exact_crossings.h"
 #include "tests/core/extract/labelled_help.h"
 
