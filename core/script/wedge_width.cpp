@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kScaleSizes = 4;
 constexpr double kScaleFinest = 100.0;     // of the root of the two longest extents' product, the least width
-constexpr double kScaleFewestEdges = 3.0;  // over a width
+constexpr double kScaleFewestEdges = 2.0;  // over a width
 constexpr double kScaleDepth = 0.45;       // of a width, to begin with
 constexpr double kScaleLeastDepth = 0.4;   // of that
 constexpr double kScaleCost = 0.0012;
@@ -67,9 +67,14 @@ WedgeScale wedge_scale(const PatchCells& cells, double width_mm) {
     if (tried.explained > best.explained) best = std::move(tried);
   }
   if (best.placed.size() < kScaleFewest) return {};
-  best = try_scale(cells, usual_of(best), 1);
+  const auto usual_now = [&] {
+    WedgeScale usual = usual_of(best);
+    if (width_mm > 0.0) usual.width_mm = width_mm;  // whoever says so knows
+    return usual;
+  };
+  best = try_scale(cells, usual_now(), 1);
   if (best.placed.size() < kScaleFewest) return {};
-  const WedgeScale usual = usual_of(best);
+  const WedgeScale usual = usual_now();
   best = Tried{};
   for (const double rounding : kScaleRoundings) {
     WedgeScale round = usual;
@@ -78,7 +83,7 @@ WedgeScale wedge_scale(const PatchCells& cells, double width_mm) {
     if (tried.explained > best.explained) best = std::move(tried);
   }
   if (best.placed.size() < kScaleFewest) return {};
-  WedgeScale out = usual_of(best);
+  WedgeScale out = usual_now();
   out.rounding = best.scale.rounding * usual.width_mm / out.width_mm;
   return out;
 }
