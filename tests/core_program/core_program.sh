@@ -12,7 +12,7 @@ for library in libGL libEGL libepoxy libglfw libX11 libusb libhidapi libopencv l
 done
 
 help=$("$program" --help)
-for verb in phantom process info exa; do
+for verb in phantom process info exa wedges handcopy; do
   grep -Eq "^ +$verb " <<<"$help" || fail "has no verb $verb"
 done
 rc=0
@@ -33,3 +33,13 @@ cmp "$work/before.exa" "$work/surfaces/tablet_2.exa" || fail "--resume made othe
 text=$("$program" process "$work/scans/tablet_1.h5" -o "$work/one.exa" --no-ao -q --progress none)
 ! grep -q "dubsar view" <<<"$text" || fail "advises a verb that it has not"
 "$program" info "$work/one.exa" | grep -q . || fail "info says nothing"
+"$program" wedges "$work/one.exa" -o "$work/one.csv" -q --progress none >/dev/null
+grep -q "^id,side,column,line,order,kind,head_x," "$work/one.csv" || fail "wedges has another first row"
+for kind in svg pdf dxf; do
+  "$program" handcopy "$work/one.exa" -o "$work/one.$kind" -q --progress none >/dev/null
+  [ -s "$work/one.$kind" ] || fail "handcopy wrote no $kind"
+  "$program" handcopy "$work/one.exa" -o "$work/one.$kind" -q --progress none >/dev/null || fail "handcopy keeps its own $kind"
+done
+rc=0
+"$program" wedges "$work/one.exa" -o "$work/one.txt" -q 2>/dev/null || rc=$?
+[ "$rc" = 64 ] || fail "wedges: exit code $rc found, 64 expected"
