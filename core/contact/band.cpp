@@ -42,16 +42,17 @@ class NearestSamples {
     return found;
   }
 
-  /// visit(node) for the points of a brick that are inside and in reach of their nearest sample.
+  /// visit(node) for the points of a brick that are inside and in reach of their nearest sample: of that, or for
+  /// `counting` of any in reach.
   template <class Visit>
-  void each_point(const glm::ivec3& brick, const BitVolume& inside, const Visit& visit) const {
+  void each_point(const glm::ivec3& brick, const BitVolume& inside, bool counting, const Visit& visit) const {
     const glm::ivec3 from = glm::max(brick * static_cast<int>(kEdge), 1),
                      to = glm::min((brick + 1) * static_cast<int>(kEdge), glm::ivec3(dims_.x, dims_.y, dims_.z) - 1);
     for (std::int32_t z = from.z; z < to.z; ++z)
       for (std::int32_t y = from.y; y < to.y; ++y)
         for (std::int32_t x = from.x; x < to.x; ++x) {
           if (!inside.get(x, y, z)) continue;
-          const std::uint32_t s = nearest_of({x, y, z});
+          const std::uint32_t s = nearest_of({x, y, z}, counting);
           if (s == ContactBand::kNone) continue;
           const glm::vec3 off = glm::vec3(x, y, z) - samples_[s].position;
           const float distance = glm::length(off);
@@ -73,17 +74,21 @@ class NearestSamples {
         dims_(dims),
         reach_(reach),
         known_({dims.x / 2 + 1, dims.y / 2 + 1, dims.z / 2 + 1}, ContactBand::kNone),
-        first_at_(known_.dims(), ContactBand::kNone),
+        first_at_(dims, ContactBand::kNone),
         next_(samples.size(), ContactBand::kNone) {
     for (std::uint32_t s = 0; s < samples.size(); ++s) {
-      const glm::ivec3 c = coarse_place(s);
-      if (!in_coarse(c)) continue;
-      std::uint32_t& first = first_at_.at(c.x, c.y, c.z);
+      const glm::ivec3 p = point_of(s);
+      if (p.x < 0 || p.y < 0 || p.z < 0 || p.x >= dims.x || p.y >= dims.y || p.z >= dims.z) continue;
+      std::uint32_t& first = first_at_.at(p.x, p.y, p.z);
+      std::uint32_t same = first;  // triangles beside each other have the same samples on their edge
+      while (same != ContactBand::kNone && samples[same].position != samples[s].position) same = next_[same];
+      if (same != ContactBand::kNone) continue;
       next_[s] = first;
       first = s;
     }
   }
 
+  glm::ivec3 point_of(std::uint32_t s) const { return glm::ivec3(glm::round(samples_[s].position)); }
   glm::ivec3 coarse_place(std::uint32_t s) const { return glm::ivec3(glm::round(0.5f * samples_[s].position)); }
   bool in_coarse(const glm::ivec3& p) const {
     const Dims& d = known_.dims();
@@ -119,7 +124,7 @@ class NearestSamples {
     return true;
   }
 
-  std::uint32_t nearest_of(const glm::ivec3& p) const {
+  std::uint32_t nearest_of(const glm::ivec3& p, bool any_in_reach) const {
     const glm::ivec3 low = p / 2, high = (p + 1) / 2;
     std::uint32_t nearest = ContactBand::kNone, last = ContactBand::kNone;
     float least = INFINITY;
@@ -135,28 +140,32 @@ class NearestSamples {
           least = square;
           nearest = s;
         }
-    constexpr float kFar = 3.0f;  ///< more than any sample beside it is nearer
-    if (nearest != ContactBand::kNone && least < (reach_ + kFar) * (reach_ + kFar))
-      look_around(glm::vec3(p), nearest, least);
+    constexpr float kFar = 3.0f;  ///< no sample beside it is nearer by as much
+    const bool may_be = nearest != ContactBand::kNone && least < (reach_ + kFar) * (reach_ + kFar);
+    if (may_be && !(any_in_reach && least < reach_ * reach_)) look_around(p, nearest, least);
     return nearest;
   }
 
-  /// Goes on to the nearest of the samples in the coarse cells around `nearest`, at the square of a distance `least`.
-  void look_around(const glm::vec3& p, std::uint32_t& nearest, float& least) const {
-    constexpr int kMostSteps = 3;
+  /// Goes on to the nearest of the samples around `nearest`, at the square of a distance `least`.
+  void look_around(const glm::ivec3& p, std::uint32_t& nearest, float& least) const {
+    constexpr int kMostSteps = 4;
     for (int step = 0; step < kMostSteps; ++step) {
       const std::uint32_t before = nearest;
-      const glm::ivec3 middle = coarse_place(before);
-      for (int k = 0; k < 27; ++k)
-        for (std::uint32_t s = first_at_.get(middle.x + k % 3 - 1, middle.y + k / 3 % 3 - 1, middle.z + k / 9 - 1);
-             s != ContactBand::kNone; s = next_[s]) {
-          const glm::vec3 off = p - samples_[s].position;
+      const glm::ivec3 middle = point_of(before);
+      for (int n = 0; n < 27; ++n) {
+        const int k = (n + 13) % 27;  // its own place first
+        const glm::ivec3 q = middle + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+        const glm::vec3 away = glm::max(glm::abs(glm::vec3(q - p)) - 0.5f, 0.0f);
+        if (glm::dot(away, away) >= least) continue;
+        for (std::uint32_t s = first_at_.get(q.x, q.y, q.z); s != ContactBand::kNone; s = next_[s]) {
+          const glm::vec3 off = glm::vec3(p) - samples_[s].position;
           const float square = glm::dot(off, off);
           if (square >= least) continue;
           least = square;
           nearest = s;
         }
-      if (nearest == before) break;
+      }
+      if (nearest == before || point_of(nearest) == middle) break;
     }
   }
 
@@ -164,8 +173,8 @@ class NearestSamples {
   Dims dims_;
   float reach_;
   BrickMap<std::uint32_t> known_;
-  BrickMap<std::uint32_t> first_at_;  ///< of the samples in each coarse cell
-  std::vector<std::uint32_t> next_;   ///< of the same cell
+  BrickMap<std::uint32_t> first_at_;  ///< of the samples nearest to each point, those at one place once
+  std::vector<std::uint32_t> next_;   ///< at the same point
 };
 
 }  // namespace
@@ -222,18 +231,18 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
   DUBSAR_ASSIGN(const NearestSamples nearest, NearestSamples::find(band.samples, inside.dims(), reach, progress));
   const std::vector<glm::ivec3> bricks = nearest.bricks();
   std::vector<std::int64_t> first(bricks.size());
-  const auto each_brick = [&](const auto& work) {
+  const auto each_brick = [&](bool counting, const auto& work) {
     parallel_for(static_cast<std::int64_t>(bricks.size()), 16, [&](std::int64_t b) {
       if (progress.cancelled()) return;
       const auto at = static_cast<std::size_t>(b);
-      nearest.each_point(bricks[at], inside, [&](const Node& node) { work(at, node); });
+      nearest.each_point(bricks[at], inside, counting, [&](const Node& node) { work(at, node); });
     });
   };
-  each_brick([&](std::size_t b, const Node&) { ++first[b]; });
+  each_brick(true, [&](std::size_t b, const Node&) { ++first[b]; });
   for (std::size_t b = 0; b < bricks.size(); ++b)
     if (first[b] > 0) band.node_at.add_brick(bricks[b].x, bricks[b].y, bricks[b].z);
   band.nodes.resize(static_cast<std::size_t>(exclusive_scan(first)));
-  each_brick([&](std::size_t b, const Node& node) {
+  each_brick(false, [&](std::size_t b, const Node& node) {
     const std::int64_t n = first[b]++;
     band.node_at.at(node.x, node.y, node.z) = static_cast<std::uint32_t>(n);
     band.nodes[static_cast<std::size_t>(n)] = node;
