@@ -49,16 +49,19 @@ class NearestSamples {
     const glm::ivec3 from = glm::max(brick * static_cast<int>(kEdge), 1),
                      to = glm::min((brick + 1) * static_cast<int>(kEdge), glm::ivec3(dims_.x, dims_.y, dims_.z) - 1);
     for (std::int32_t z = from.z; z < to.z; ++z)
-      for (std::int32_t y = from.y; y < to.y; ++y)
+      for (std::int32_t y = from.y; y < to.y; ++y) {
+        std::uint32_t beside = ContactBand::kNone;  // that of the point before
         for (std::int32_t x = from.x; x < to.x; ++x) {
           if (!inside.get(x, y, z)) continue;
-          const std::uint32_t s = nearest_of({x, y, z}, counting);
+          const std::uint32_t s = nearest_of({x, y, z}, beside, counting);
           if (s == ContactBand::kNone) continue;
+          if (!counting) beside = s;
           const glm::vec3 off = glm::vec3(x, y, z) - samples_[s].position;
           const float distance = glm::length(off);
           if (distance > reach_) continue;
           visit({x, y, z, s, glm::dot(off, samples_[s].normal), distance});
         }
+      }
   }
 
  private:
@@ -124,7 +127,7 @@ class NearestSamples {
     return true;
   }
 
-  std::uint32_t nearest_of(const glm::ivec3& p, bool any_in_reach) const {
+  std::uint32_t nearest_of(const glm::ivec3& p, std::uint32_t guess, bool any_in_reach) const {
     const glm::ivec3 low = p / 2, high = (p + 1) / 2;
     std::uint32_t nearest = ContactBand::kNone, last = ContactBand::kNone;
     float least = INFINITY;
@@ -140,6 +143,13 @@ class NearestSamples {
           least = square;
           nearest = s;
         }
+    if (guess != ContactBand::kNone && nearest != ContactBand::kNone) {
+      const glm::vec3 off = glm::vec3(p) - samples_[guess].position;
+      if (const float square = glm::dot(off, off); square < least) {
+        least = square;
+        nearest = guess;
+      }
+    }
     constexpr float kFar = 3.0f;  ///< no sample beside it is nearer by as much
     const bool may_be = nearest != ContactBand::kNone && least < (reach_ + kFar) * (reach_ + kFar);
     if (may_be && !(any_in_reach && least < reach_ * reach_)) look_around(p, nearest, least);
@@ -152,14 +162,18 @@ class NearestSamples {
     for (int step = 0; step < kMostSteps; ++step) {
       const std::uint32_t before = nearest;
       const glm::ivec3 middle = point_of(before);
+      // Beside the foot of the point on the patch, by no more than what is known lies, and half a diagonal of a cell.
+      const glm::vec3 normal = samples_[before].normal, off = glm::vec3(p) - samples_[before].position;
+      const float height = glm::dot(off, normal), aside = std::sqrt(std::max(least - height * height, 0.0f)) + 0.87f;
       for (int n = 0; n < 27; ++n) {
         const int k = (n + 13) % 27;  // its own place first
         const glm::ivec3 q = middle + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-        const glm::vec3 away = glm::max(glm::abs(glm::vec3(q - p)) - 0.5f, 0.0f);
-        if (glm::dot(away, away) >= least) continue;
+        const glm::vec3 way(q - p);
+        const float up = glm::dot(way, normal);
+        if (glm::dot(way, way) - up * up > aside * aside) continue;
         for (std::uint32_t s = first_at_.get(q.x, q.y, q.z); s != ContactBand::kNone; s = next_[s]) {
-          const glm::vec3 off = glm::vec3(p) - samples_[s].position;
-          const float square = glm::dot(off, off);
+          const glm::vec3 to = glm::vec3(p) - samples_[s].position;
+          const float square = glm::dot(to, to);
           if (square >= least) continue;
           least = square;
           nearest = s;
