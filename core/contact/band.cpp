@@ -143,7 +143,8 @@ class NearestSamples {
           least = square;
           nearest = s;
         }
-    if (guess != ContactBand::kNone && nearest != ContactBand::kNone) {
+    // Points are counted without a guess: none may bring one into reach.
+    if (guess != ContactBand::kNone && nearest != ContactBand::kNone && least < reach_ * reach_) {
       const glm::vec3 off = glm::vec3(p) - samples_[guess].position;
       if (const float square = glm::dot(off, off); square < least) {
         least = square;
