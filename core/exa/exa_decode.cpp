@@ -227,7 +227,7 @@ Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions&
                 counts.edges, counts.faces, header.samples.edges, header.samples.faces);
   DUBSAR_TRY(decode_offsets(reader, header, *index, samples, progress, damage ? *damage : ExaDamage()));
   DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, *index, progress));
-  model.mesh.embedded = header.embedded;
+  model.mesh.embedded = header.sums.embedded;
   index.reset();
   if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads) {
     if (damage != nullptr) return bare(std::move(model), header, progress);

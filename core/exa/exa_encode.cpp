@@ -182,7 +182,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   header.isovalue = model.samples.isovalue;
   header.offset_bits = model.samples.offset_bits;
   header.closed = model.samples.closed;
-  header.embedded = model.mesh.embedded;
+  header.sums.embedded = model.mesh.embedded;
   header.vertices = model.mesh.vertex_count();
   header.quads = model.mesh.quad_count();
   header.samples.edges = static_cast<std::int64_t>(model.samples.offsets.size());

@@ -20,7 +20,7 @@ Result<SurfaceModel> bare_model(SurfaceSamples samples, const ExaHeader& header,
   model.frame.scale = frame.scale * scale;
   model.samples = std::move(samples);
   DUBSAR_ASSIGN(model.mesh, build_quad_mesh(model.samples, progress));
-  model.mesh.embedded = header.embedded;
+  model.mesh.embedded = header.sums.embedded;
   return model;
 }
 

@@ -97,7 +97,7 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
     return fail(ErrorKind::kBadData, "exa: isovalue, scale, origin and voxel size must be finite to be stored");
   nlohmann::ordered_json json;
   if (header.profile == ExaProfile::kPaper) json["profile"] = "paper";
-  if (header.embedded) json["cut"] = "envelope";
+  if (header.sums.embedded) json["cut"] = "envelope";
   json["dims"] = {header.dims.x, header.dims.y, header.dims.z};
   json["isovalue"] = static_cast<double>(header.isovalue);
   json["offset_bits"] = header.offset_bits;
@@ -151,7 +151,7 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
       return fail(ErrorKind::kBadData,
                   "exa: cut {} found, expected \"envelope\" or none; a newer program reads this file",
                   json["cut"].dump());
-    header.embedded = true;
+    header.sums.embedded = true;
   }
   const glm::dvec3 dims = members.vector("dims");
   header.isovalue = static_cast<float>(members.number("isovalue"));

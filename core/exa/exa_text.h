@@ -30,9 +30,10 @@ enum class ExaNormals {
   kQuantised,   ///< stored in the steps of an octahedron; curvatures are principal_curvatures() with them
 };
 
-/// position_sum_of() and quad_sum_of() of the mesh that was written.
+/// position_sum_of() and quad_sum_of() of the mesh that was written, and how its x-quads are cut.
 struct MeshSums {
   std::uint32_t positions = 0, quads = 0;
+  bool embedded = false;  ///< as QuadMesh::embedded says
 };
 
 struct ExaHeader {
@@ -42,7 +43,6 @@ struct ExaHeader {
   float isovalue = 0.0f;
   int offset_bits = 4;
   bool closed = true;
-  bool embedded = false;  ///< x-quads are cut as QuadMesh::embedded says
   std::int64_t vertices = 0, quads = 0;
   SampleCounts samples;  ///< as many offsets as edges, as many decisions as faces
   ExaNormals normals = ExaNormals::kNone;

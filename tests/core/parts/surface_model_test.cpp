@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/mesh_check.h"
 #include "tests/core/parts/grid_scene.h"
@@ -40,6 +41,39 @@ TEST(SurfaceModel, WholeMeshWithoutPartitionsIsClosedAndOne) {
   EXPECT_EQ(mesh.positions.size(), model.mesh.positions.size());
   EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
   EXPECT_TRUE(mesh.ao.empty());
+}
+
+TEST(SurfaceModel, PointsOnFacesBelongToBothPartsAndToPatchesAlongThem) {
+  std::mt19937 bits(91);
+  SurfaceModel model = scene::extract_model({30, 30, 30}, [&](const glm::vec3& p) {
+    const bool border = std::min({p.x, p.y, p.z}) < 0.5f || std::max({p.x, p.y, p.z}) > 28.5f;
+    return border ? -1.0f : static_cast<float>(bits() >> 8) * 0x1p-24f - 0.5f;
+  });
+  model.patches.clear();
+  const Triangulation cut = triangulate(model.mesh, model.attributes.normals);
+  ASSERT_FALSE(cut.face_points.empty());
+  const FacePoint& point = cut.face_points[cut.face_points.size() / 2];
+  const float middle = static_cast<float>(point.place.x) / 1024.0f;  // the cut passes it
+  model.partitions = {{.id = 0, .name = "left", .body = ""}, {.id = 1, .name = "right", .body = ""}};
+  for (const auto& q : model.mesh.quads) model.quad_partition.push_back(model.mesh.positions[q[0]].x > middle);
+  std::array<std::int64_t, 2> border{};
+  std::size_t triangles = 0;
+  for (const PartitionId id : {PartitionId{0}, PartitionId{1}}) {
+    const TriMesh part = make_tri_mesh(model, {.partition = id}).value();
+    const MeshCheck check = check_mesh(part.positions, part.triangles);
+    EXPECT_TRUE(check.manifold());
+    border[id] = check.boundary_edges;
+    triangles += part.triangles.size();
+  }
+  EXPECT_GT(border[0], 0);
+  EXPECT_EQ(border[0], border[1]);
+  EXPECT_EQ(triangles, cut.triangles.size());
+  const auto vertices = static_cast<std::uint32_t>(model.mesh.positions.size());
+  model.patches.push_back(
+      {.partition = 0, .extra_positions = {{1, 2, 3}}, .triangles = {{point.b, point.a, vertices}}});
+  EXPECT_EQ(make_tri_mesh(model, {.partition = PartitionId{0}}).value().triangles.size() +
+                make_tri_mesh(model, {.partition = PartitionId{1}}).value().triangles.size(),
+            triangles + 2);
 }
 
 TEST(SurfaceModel, PartsShareNoVertexAndEachKeepsItsBorder) {
