@@ -257,10 +257,9 @@ std::int64_t reach_of(const DenoiseOptions& options) noexcept {
   return options.iterations * (options.window / 2 + guide_radius(options));
 }
 
-std::unique_ptr<SlabSource> make_sharpened(SlabSource& source, float amount, const Wanted& wanted, int window) {
+std::unique_ptr<SlabSource> make_sharpened(SlabSource& source, float amount, const Wanted& wanted) {
   DenoiseOptions gauss;
   gauss.method = DenoiseMethod::kGauss;
-  gauss.window = window;
   return std::make_unique<FilterSource>(source, gauss, wanted, amount);
 }
 

@@ -23,8 +23,8 @@ constexpr double kMostMargin = 0.3, kLeastMargin = 0.12, kMarginNoise = 4.0;
 /// Balls in which the blur is measured, and what decides whether there is an edge (edge_spread.h).
 constexpr std::int64_t kBlurReach = 7;
 
-/// Variance of edges where it cannot be measured: that of good scans (core/contact/trace.h), voxels squared.
-constexpr double kBlurOfGoodScans = 0.42;
+/// Variance of the Gauss 3x3x3 that sharpening undoes: an amount of 1 takes as much off the variance of an edge.
+constexpr double kGaussVariance = 0.5;
 
 struct Learned {
   std::vector<FilterStep> steps;
@@ -78,16 +78,16 @@ Result<RefinedSurface> refine(SlabSource& scan, GridStore& half, double half_noi
                 mark_near_surface(half, scan.dims(),
                                   {.threshold = threshold, .margin = margin_for(estimates, half_noise)}, run.progress));
   half.release();
-  BandFilters filters{std::move(learned.passes), {}};
+  BandFilters filters{std::move(learned.passes), 0.0f};
   SampledSurface& sampled = refined.sampled;
-  if (options.sample.sharpen) {
-    filters.sharpen.amount = *options.sample.sharpen;
-  } else if (options.denoise.iterations > 0 && sharpening_for(kBlurOfGoodScans, estimates.snr_db).amount > 0.0f) {
+  sampled.sharpen =
+      options.sample.sharpen.value_or(options.denoise.iterations > 0 ? sharpen_amount(estimates.snr_db) : 0.0f);
+  if (!options.sample.sharpen && sampled.sharpen > 0.0f) {
     DUBSAR_ASSIGN(BandSource around, BandSource::make(scan, filters, surface, kBlurReach, outside));
     DUBSAR_ASSIGN(sampled.blur, measure_edge_spread(around, estimates.m_lo, estimates.m_hi, run.progress));
-    filters.sharpen = sharpening_for(sampled.blur ? sampled.blur->variance : kBlurOfGoodScans, estimates.snr_db);
+    if (sampled.blur) sampled.sharpen *= static_cast<float>(std::min(sampled.blur->variance / kGaussVariance, 1.0));
   }
-  sampled.sharpen = filters.sharpen;
+  filters.sharpen = sampled.sharpen;
   DUBSAR_ASSIGN(SurfaceBand band, read_band(scan, std::move(surface), filters, threshold, outside, run.progress));
   refined.band = band.report;
   run.clock.finish(512 * band.report.bricks);

@@ -30,7 +30,7 @@ struct VertexMoves {
 
 /// What was decided where the isosurface was sampled.
 struct SurfaceDecisions {
-  Sharpening sharpen;                 ///< that was used
+  float sharpen = 0.0f;               ///< amount that was used
   NoiseCavities noise;                ///< that became clay
   std::optional<LocalLevels> levels;  ///< where they were measured
 };

@@ -205,9 +205,9 @@ Result<void> extract_surface(SlabSource& source, const GridFacts& facts, const S
 Result<SampledSurface> sample(GridStore& grid, const GridFacts& facts, bool denoised, const SampleOptions& options,
                               StageRun run) {
   SampledSurface sampled;
-  sampled.sharpen.amount = options.sharpen.value_or(denoised ? sharpen_amount(facts.estimates.snr_db) : 0.0f);
-  const std::unique_ptr<SlabSource> sharpened = make_sharpened(grid, sampled.sharpen.amount);
-  SlabSource& source = sampled.sharpen.amount > 0.0f ? *sharpened : static_cast<SlabSource&>(grid);
+  sampled.sharpen = options.sharpen.value_or(denoised ? sharpen_amount(facts.estimates.snr_db) : 0.0f);
+  const std::unique_ptr<SlabSource> sharpened = make_sharpened(grid, sampled.sharpen);
+  SlabSource& source = sampled.sharpen > 0.0f ? *sharpened : static_cast<SlabSource&>(grid);
   DUBSAR_TRY(extract_surface(source, facts, options, sampled, run));
   return sampled;
 }

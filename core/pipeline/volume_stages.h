@@ -13,7 +13,6 @@
 #include "core/filter/edge_spread.h"
 #include "core/filter/estimate.h"
 #include "core/filter/levels.h"
-#include "core/filter/sharpen.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
 #include "core/rays/bent_rays.h"
@@ -100,14 +99,14 @@ struct SampleOptions {
 
 struct SampledSurface {
   SurfaceSamples samples;
-  Sharpening sharpen;                 ///< that was used
+  float sharpen = 0.0f;               ///< amount that was used
   std::optional<EdgeSpread> blur;     ///< of the grid before it was sharpened, where that was decided by it
   NoiseCavities noise;                ///< that became clay
   std::optional<LocalLevels> levels;  ///< where they were measured
   std::string warning;                ///< for people; empty: none
 };
 
-/// How much sharpening the noise allows at half of the resolution, in dB of what filters left.
+/// How much sharpening the noise allows, in dB of what filters left.
 float sharpen_amount(double snr_db);
 
 /// What is known of a grid whose surface is to be found.

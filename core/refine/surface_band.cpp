@@ -4,6 +4,7 @@
 
 #include "core/base/system/log.h"
 #include "core/base/system/parallel.h"
+#include "core/filter/sharpen.h"
 
 namespace dubsar {
 namespace {
@@ -14,7 +15,7 @@ constexpr int kMostRounds = 12;
 
 Result<FilteredScan> FilteredScan::make(SlabSource& scan, const BandFilters& filters, const Wanted& wanted) {
   FilteredScan result(scan);
-  std::int64_t reach = filters.sharpen.amount > 0.0f ? filters.sharpen.window / 2 : 0;
+  std::int64_t reach = filters.sharpen > 0.0f ? 1 : 0;
   for (const DenoiseOptions& pass : filters.passes) reach += reach_of(pass);
   for (const DenoiseOptions& pass : filters.passes) {
     reach -= reach_of(pass);
@@ -22,8 +23,8 @@ Result<FilteredScan> FilteredScan::make(SlabSource& scan, const BandFilters& fil
     result.filters_.push_back(std::move(filter));
     result.last_ = result.filters_.back().get();
   }
-  if (filters.sharpen.amount > 0.0f) {
-    result.filters_.push_back(make_sharpened(*result.last_, filters.sharpen.amount, wanted, filters.sharpen.window));
+  if (filters.sharpen > 0.0f) {
+    result.filters_.push_back(make_sharpened(*result.last_, filters.sharpen, wanted));
     result.last_ = result.filters_.back().get();
   }
   return result;

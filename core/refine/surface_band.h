@@ -9,16 +9,15 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/filter/denoise.h"
-#include "core/filter/sharpen.h"
 #include "core/refine/brick_values.h"
 #include "core/refine/near_surface.h"
 
 namespace dubsar {
 
-/// Passes over the scan one after the other, each with its own noise, and sharpening at the end (amount 0: none).
+/// Passes over the scan one after the other, each with its own noise, and sharpening at the end (0: none).
 struct BandFilters {
   std::vector<DenoiseOptions> passes;
-  Sharpening sharpen;
+  float sharpen = 0.0f;
 };
 
 /// The scan behind these filters, at the points that are wanted; nothing elsewhere (denoise.h). Borrows scan and mask.

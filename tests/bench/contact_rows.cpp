@@ -76,10 +76,10 @@ void count_crossings(const TriMesh& mesh, JudgedRow& judged) {
     });
   };
   for (const auto& [a, b] : self_intersections(mesh.positions, mesh.triangles))
-    ++(of_patch(a) || of_patch(b) ? judged.crossings : judged.self_crossings);
+    ++(of_patch(a) || of_patch(b) ? judged.crossings.of_patches : judged.crossings.of_surface);
   const ExactCheck exact = check_exactly(mesh.positions, mesh.triangles);
-  judged.exact.crossing_pairs += exact.crossing_pairs;
-  judged.exact.zero_area_triangles += exact.zero_area_triangles;
+  judged.crossings.exact.crossing_pairs += exact.crossing_pairs;
+  judged.crossings.exact.zero_area_triangles += exact.zero_area_triangles;
 }
 
 }  // namespace
@@ -171,7 +171,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   }
   judged.stages = result.report.stages;
   judged.blur = result.report.scan.blur;
-  judged.sharpen = result.report.surface_by.sharpen.amount;
+  judged.sharpen = result.report.surface_by.sharpen;
   judged.traced = result.report.contact && result.report.contact->traced;
   if (result.report.contact) judged.remark = result.report.contact->why;
   if (!how.judge) return judged;

@@ -37,14 +37,18 @@ struct TabletError {
   TabletCover cover;
 };
 
+struct Crossings {
+  std::int64_t of_patches = 0;  ///< pairs of triangles, one of a patch, that cross on tablet or envelope
+  std::int64_t of_surface = 0;  ///< pairs of the surface itself
+  ExactCheck exact;             ///< of tablet and envelope, each alone
+};
+
 struct JudgedRow {
   phantom::ContactScore contact;
   phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
   TabletError tablet;
-  float sharpen = 0.0f;             ///< amount that was used
-  std::int64_t crossings = 0;       ///< pairs of triangles, one of a patch, that cross on tablet or envelope
-  std::int64_t self_crossings = 0;  ///< pairs of the surface itself
-  ExactCheck exact;                 ///< of tablet and envelope, each alone
+  float sharpen = 0.0f;  ///< amount that was used
+  Crossings crossings;
   bool traced = false;
   std::optional<EdgeSpread> blur;
   double step = 1.0;   ///< voxels of the scan in one of the grid

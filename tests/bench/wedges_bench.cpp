@@ -152,9 +152,9 @@ void print_row(const ContactRow& row, const JudgedRow& j) {
       row.name, row.options.seed, c.cases[0].kept_fraction(), j.tablet.rms, c.cases[1].kept_fraction(),
       c.cases[1].shown_fraction(), c.cases[2].kept_fraction(), c.near_fraction(), percent(2), percent(3),
       std::min(j.seen.owner[0].purity(), j.seen.owner[1].purity()),
-      std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.self_crossings,
-      j.exact.crossing_pairs, j.exact.zero_area_triangles, j.blur ? std::sqrt(j.blur->variance) : NAN, j.cpu_s,
-      j.contact_cpu_s, j.peak_mib, j.remark);
+      std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings.of_patches,
+      j.crossings.of_surface, j.crossings.exact.crossing_pairs, j.crossings.exact.zero_area_triangles,
+      j.blur ? std::sqrt(j.blur->variance) : NAN, j.cpu_s, j.contact_cpu_s, j.peak_mib, j.remark);
   std::fflush(stdout);
 }
 
@@ -251,7 +251,7 @@ int print_wanted(const Kinds& kinds) {
   });
   double crossings = 0.0;
   for (const auto& [name, kind] : kinds)
-    crossings = std::max(crossings, kind.largest([](const JudgedRow& r) { return r.crossings; }));
+    crossings = std::max(crossings, kind.largest([](const JudgedRow& r) { return r.crossings.of_patches; }));
   table.at_most("crossings of patches with the surface or themselves, all phantoms", 0, 0, crossings);
   return table.failed();
 }

@@ -84,6 +84,7 @@ TEST(Calls, AFunctionThatNothingCallsIsFound) {
 TEST(Calls, WhatAHeaderOffersIsUsedByTheHouse) {
   // What a test has to see or to put in place, of things whose purpose is to be looked at.
   const std::set<std::string> for_tests{
+      "check_exactly",            // what is exported, counted by tests and benchmarks
       "coarse_views",             // of the picture that is shown
       "in_contact",               // truth of a phantom
       "nearest_part",             // the same
