@@ -30,6 +30,13 @@ SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, Ve
 }
 
 /// What is known of voxels when they are not needed any more.
+/// Patches are kept from crossing a surface whose vertices may leave their cells (untangle.h); of one whose vertices do
+/// not they cross more, so that only what gets none is cut to cross nowhere.
+bool may_be_patched(const PipelineOptions& options) {
+  return options.fill_holes &&
+         (options.segment.method == SegmentMethod::kNested || options.segment.method == SegmentMethod::kConcavity);
+}
+
 struct FoundSurface {
   SampledSurface sampled;
   Threshold threshold;
@@ -172,7 +179,9 @@ struct Run {
         return keep(half, denoise(std::move(imported.grid), kHalvedGrid, options.denoise, imported.estimate, run));
       case RunStage::kSurface: return find();
       case RunStage::kMesh:
-        return keep(smoothed.mesh, mesh_of_samples(found.sampled.samples, found.threshold.value, run));
+        DUBSAR_TRY(keep(smoothed.mesh, mesh_of_samples(found.sampled.samples, found.threshold.value, run)));
+        smoothed.mesh.embedded = !may_be_patched(options);
+        return {};
       case RunStage::kSmooth:
         return keep(smoothed, smooth_and_measure(std::move(smoothed.mesh), options.smooth, options.curvature, run));
       case RunStage::kSettle: return settle_model();
