@@ -27,7 +27,8 @@ void add_script_options(Arguments& command, ScriptRequest& request) {
   command.reads("IN", request.in, "EXA, PLY, OBJ, STL or GLB file").required();
   command.value("--part", request.part, "which part: tablet where there is one (auto), all, envelope outside, ...");
   command.value("--unit", request.unit, kUnitHelp);
-  command.value("--width", request.width_mm, "usual width of a head in mm, where the one found (see the result) is wrong")
+  command
+      .value("--width", request.width_mm, "usual width of a head in mm, where the one found (see the result) is wrong")
       .not_negative();
   command.value("--confidence", request.confidence, "least confidence of a wedge, 0 to 1 (0.5)").range(0.0, 1.0);
 }

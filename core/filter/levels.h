@@ -62,11 +62,12 @@ struct LocalLevels {
 std::string describe(const LocalLevels& levels);
 
 /// Profiles across the surface along the axes of the grid: clay from 1 to 4 voxels behind it, air from 1 to 4 before
-/// it; gaps of fewer than three voxels do not count, nor does what is thinner than four voxels. Their means in cells, averaged by a Gauss of 12 voxels; half way
-/// between them is the level, and the surface is looked for at it again, three times (local adaptive surface
-/// determination, but with averages of some hundred profiles instead of single ones). Where a tenth of the surface
-/// does not differ by 4 % of the contrast the scan is left as it is. Reads the source three times, or once, 20 slices
-/// at a time. The same for any number of threads. Errors of the source, kCancelled.
+/// it; gaps of fewer than three voxels do not count, nor does what is thinner than four voxels. Their means in cells,
+/// averaged by a Gauss of 12 voxels; half way between them is the level, and the surface is looked for at it again,
+/// three times (local adaptive surface determination, but with averages of some hundred profiles instead of single
+/// ones). Where a tenth of the surface does not differ by 4 % of the contrast the scan is left as it is. Reads the
+/// source three times, or once, 20 slices at a time. The same for any number of threads. Errors of the source,
+/// kCancelled.
 Result<LocalLevels> measure_levels(SlabSource& source, const LevelOptions& options, Progress& progress);
 
 /// A source less a field of its dims. Borrows both.

@@ -20,8 +20,8 @@ constexpr std::int64_t kQuickWidest = 128, kFineWidest = 320;
 constexpr std::int64_t kMarginOfWidth = 43, kLeastRaysMargin = 3;
 /// Of the air's unevenness that the right axis leaves in the halved grid.
 constexpr double kMostAirOfAxis = 0.7;
-/// A crossing of a large grid takes less than one in the search, where ramps and sums over few planes weigh more: .55 to
-/// .67 of it at 512x272x472 and 1000x534x920 voxels by 16 threads.
+/// A crossing of a large grid takes less than one in the search, where ramps and sums over few planes weigh more: .55
+/// to .67 of it at 512x272x472 and 1000x534x920 voxels by 16 threads.
 constexpr double kLargeFactor = 0.65;
 
 /// What is found has lengths in voxels of the scan.
