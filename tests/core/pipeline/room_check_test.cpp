@@ -129,7 +129,10 @@ phantom::PhantomOptions glued(phantom::Contact kind, double share, std::uint64_t
   return wanted;
 }
 
-TEST_F(Room, ADozenBudgetsAreKeptOrRefusedBeforeTheScanIsRead) {
+/// A suite of its own: minutes, and no sanitizer keeps a budget.
+class RoomOfBudgets : public Room {};
+
+TEST_F(RoomOfBudgets, ADozenAreKeptOrRefusedBeforeTheScanIsRead) {
   SilentProgress progress;
   share_heaps();
   PipelineOptions run = options();
