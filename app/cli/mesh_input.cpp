@@ -146,4 +146,16 @@ Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
   return mesh;
 }
 
+Result<TriMesh> load_written_part(const std::string& path, const std::string& part, const std::string& unit,
+                                  Progress& progress) {
+  DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(unit));
+  const MeshReadOptions foreign{unit_mm, true};
+  if (part != "auto" && part != "all") return load_mesh({path, {part}, true, foreign}, progress);
+  if (part == "auto")
+    if (Result<TriMesh> tablet = load_mesh({path, {"tablet"}, true, foreign}, progress);
+        tablet || tablet.error().kind != ErrorKind::kUsage)
+      return tablet;
+  return load_mesh({path, {}, true, foreign}, progress);
+}
+
 }  // namespace dubsar::app

@@ -29,6 +29,11 @@ Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress);
 Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
                           const std::function<void(TriMesh)>& tell_coarse);
 
+/// What was written on, of a file: `part` is "auto" (the tablet where there is one, else everything), "all", or a name;
+/// `unit` as --unit says it. Errors of load_mesh(), mesh_unit_mm().
+Result<TriMesh> load_written_part(const std::string& path, const std::string& part, const std::string& unit,
+                                  Progress& progress);
+
 /// "--unit": what one unit of a mesh file is.
 inline constexpr const char* kUnitHelp =
     "of a mesh file, what one unit is: m, cm, mm, um, inch; where the file does not say, or means mm and says m as GLB "

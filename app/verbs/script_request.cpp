@@ -2,26 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "core/base/files/atomic_file.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
-namespace {
-
-/// The tablet where there is one, else everything.
-Result<TriMesh> load_script_part(const ScriptRequest& request, Progress& progress) {
-  DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(request.unit));
-  const MeshReadOptions foreign{unit_mm, true};
-  if (request.part != "auto" && request.part != "all")
-    return load_mesh({request.in, {request.part}, true, foreign}, progress);
-  if (request.part == "auto")
-    if (Result<TriMesh> tablet = load_mesh({request.in, {"tablet"}, true, foreign}, progress);
-        tablet || tablet.error().kind != ErrorKind::kUsage)
-      return tablet;
-  return load_mesh({request.in, {}, true, foreign}, progress);
-}
-
-}  // namespace
 
 void add_script_options(Arguments& command, ScriptRequest& request) {
   command.reads("IN", request.in, "EXA, PLY, OBJ, STL or GLB file").required();
@@ -35,7 +18,7 @@ void add_script_options(Arguments& command, ScriptRequest& request) {
 
 Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progress) {
   ScriptSurface out;
-  DUBSAR_ASSIGN(out.mesh, load_script_part(request, progress));
+  DUBSAR_ASSIGN(out.mesh, load_written_part(request.in, request.part, request.unit, progress));
   if (!out.mesh.frame.input_voxel.known()) {
     if (is_exa_file(request.in))
       return fail(ErrorKind::kUsage,
@@ -49,12 +32,6 @@ Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progre
   search.least_confidence = request.confidence;
   DUBSAR_ASSIGN(out.found, find_wedges(out.mesh, search, progress));
   return out;
-}
-
-Result<void> write_text_file(const std::string& path, const std::string& text) {
-  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
-  DUBSAR_TRY(file.write(text));
-  return file.commit();
 }
 
 }  // namespace dubsar::app

@@ -23,7 +23,4 @@ struct ScriptSurface {
 };
 Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progress);
 
-/// Writes a text whole or not at all.
-Result<void> write_text_file(const std::string& path, const std::string& text);
-
 }  // namespace dubsar::app

@@ -44,19 +44,6 @@ fs::path with_suffix(const fs::path& path, const std::string& suffix) {
   return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
 }
 
-/// The tablet where there is one, else everything.
-Result<TriMesh> load_part(const FatCrossRequest& options, Progress& progress) {
-  DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(options.unit));
-  const MeshReadOptions foreign{unit_mm, true};
-  if (options.part != "auto" && options.part != "all")
-    return load_mesh({options.in, {options.part}, true, foreign}, progress);
-  if (options.part == "auto")
-    if (Result<TriMesh> tablet = load_mesh({options.in, {"tablet"}, true, foreign}, progress);
-        tablet || tablet.error().kind != ErrorKind::kUsage)
-      return tablet;
-  return load_mesh({options.in, {}, true, foreign}, progress);
-}
-
 PictureOptions file_of(const FatCrossRequest& options) {
   PictureOptions out;
   out.dpi = options.dpi;
@@ -177,7 +164,7 @@ Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
   for (const std::string& style : styles) DUBSAR_TRY(shading_preset(style));
   DUBSAR_TRY(check_told(options.look.told));
   DUBSAR_TRY(check_besides(options, styles));
-  DUBSAR_ASSIGN(const TriMesh mesh, load_part(options, progress));
+  DUBSAR_ASSIGN(const TriMesh mesh, load_written_part(options.in, options.part, options.unit, progress));
   if (!mesh.frame.input_voxel.known() && !is_exa_file(options.in))
     log(LogLevel::kWarning, fmt::format("{} does not state its units; taken as millimetres", options.in));
   if (!mesh.frame.input_voxel.known() && is_exa_file(options.in))

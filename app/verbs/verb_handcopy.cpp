@@ -7,6 +7,7 @@
 #include "app/cli/default_output.h"
 #include "app/cli/verb.h"
 #include "app/verbs/script_request.h"
+#include "core/base/files/atomic_file.h"
 #include "core/base/files/file_suffix.h"
 #include "core/script/hand_copy.h"
 
@@ -30,7 +31,9 @@ Result<VerbResult> run_handcopy(const HandCopyRequest& request, Progress& progre
     if (side.name == request.side) copy.side = side.value;
   DUBSAR_ASSIGN(const ScriptSurface surface, read_script(request.script, progress));
   DUBSAR_ASSIGN(const CopySheet sheet, hand_copy(surface.mesh, surface.found, copy));
-  DUBSAR_TRY(write_text_file(out, suffix == ".svg" ? svg_of(sheet) : suffix == ".pdf" ? pdf_of(sheet) : dxf_of(sheet)));
+  DUBSAR_TRY(write_file_atomically(out, suffix == ".svg"   ? svg_of(sheet)
+                                        : suffix == ".pdf" ? pdf_of(sheet)
+                                                           : dxf_of(sheet)));
   VerbResult result;
   result.text = fmt::format("{}: {} wedges on {:.1f} x {:.1f} mm, scale 1:1\n", out, surface.found.wedges.size(),
                             sheet.width_mm, sheet.height_mm);

@@ -8,6 +8,7 @@
 #include "app/cli/default_output.h"
 #include "app/cli/verb.h"
 #include "app/verbs/script_request.h"
+#include "core/base/files/atomic_file.h"
 #include "core/base/files/file_suffix.h"
 #include "core/script/wedge_table.h"
 
@@ -20,7 +21,7 @@ Result<VerbResult> run_wedges(const ScriptRequest& request, Progress& progress) 
     return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .csv or .json", request.out);
   DUBSAR_ASSIGN(const ScriptSurface surface, read_script(request, progress));
   const WedgesFound& found = surface.found;
-  DUBSAR_TRY(write_text_file(
+  DUBSAR_TRY(write_file_atomically(
       request.out, suffix == ".csv" ? wedges_csv(found.wedges) : wedges_json(found, "dubsar " DUBSAR_VERSION)));
   VerbResult result;
   std::array<int, kWedgeKindCount> kinds{};

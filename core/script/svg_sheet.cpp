@@ -1,30 +1,10 @@
 #include <fmt/format.h>
 
+#include "core/base/text/markup_text.h"
 #include "core/script/copy_sheet.h"
 
 namespace dubsar {
 namespace {
-
-std::string svg_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
 
 std::string svg_path(const CopyPath& path, const std::string& indent) {
   std::string d;
@@ -36,7 +16,7 @@ std::string svg_path(const CopyPath& path, const std::string& indent) {
           ? fmt::format(R"( stroke="#000" stroke-width="{:.3f}" stroke-linecap="round" stroke-linejoin="round")",
                         path.stroke_mm)
           : std::string(R"( stroke="none")");
-  return fmt::format("{}<path class=\"{}\" d=\"{}\" fill=\"{}\"{}/>\n", indent, svg_text(path.name), d,
+  return fmt::format("{}<path class=\"{}\" d=\"{}\" fill=\"{}\"{}/>\n", indent, markup_text(path.name), d,
                      path.filled ? "#000" : "none", stroke);
 }
 
@@ -47,7 +27,7 @@ std::string svg_label(const CopyText& text, const std::string& indent) {
   return fmt::format(
       "{}<text x=\"{:.3f}\" y=\"{:.3f}\" font-size=\"{:.2f}\" font-family=\"Gentium Plus, Linux Libertine, serif\" "
       "text-anchor=\"{}\" fill=\"#000\">{}</text>\n",
-      indent, text.at.x, text.at.y, text.size_mm, anchor, svg_text(text.text));
+      indent, text.at.x, text.at.y, text.size_mm, anchor, markup_text(text.text));
 }
 
 }  // namespace
@@ -58,14 +38,14 @@ std::string svg_of(const CopySheet& sheet) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" "
       "version=\"1.1\" width=\"{0:.3f}mm\" height=\"{1:.3f}mm\" viewBox=\"0 0 {0:.3f} {1:.3f}\">\n"
       "<!-- made by dubsar; one unit is one mm -->\n<title>{2}</title>\n<desc>{3}</desc>\n",
-      sheet.width_mm, sheet.height_mm, svg_text(sheet.title), svg_text(sheet.description));
+      sheet.width_mm, sheet.height_mm, markup_text(sheet.title), markup_text(sheet.description));
   for (const CopyLayer& layer : sheet.layers) {
     out += fmt::format("<g id=\"{}\" class=\"layer {}\" inkscape:groupmode=\"layer\" inkscape:label=\"{}\">\n",
-                       svg_text(layer.id), svg_text(layer.classes), svg_text(layer.label));
+                       markup_text(layer.id), markup_text(layer.classes), markup_text(layer.label));
     for (const CopyPath& path : layer.paths) out += svg_path(path, " ");
     for (const CopyGroup& group : layer.groups) {
-      out += fmt::format(" <g id=\"{}\" class=\"{}\"", svg_text(group.id), svg_text(group.classes));
-      for (const auto& [name, value] : group.data) out += fmt::format(" data-{}=\"{}\"", name, svg_text(value));
+      out += fmt::format(" <g id=\"{}\" class=\"{}\"", markup_text(group.id), markup_text(group.classes));
+      for (const auto& [name, value] : group.data) out += fmt::format(" data-{}=\"{}\"", name, markup_text(value));
       out += ">\n";
       for (const CopyPath& path : group.paths) out += svg_path(path, "  ");
       out += " </g>\n";

@@ -84,6 +84,15 @@ void count_crossings(const TriMesh& mesh, JudgedRow& judged) {
 
 }  // namespace
 
+std::string spread_text(const std::vector<double>& values, int digits) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  const double mean = sum / static_cast<double>(values.size());
+  if (values.size() == 1) return fmt::format("{:.{}f}", mean, digits);
+  return fmt::format("{:.{}f} ± {:.{}f}", mean, digits, 0.5 * (*most - *least), digits);
+}
+
 std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed) {
   using phantom::Contact;
   std::vector<ContactRow> all;

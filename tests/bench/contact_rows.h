@@ -37,6 +37,9 @@ struct TabletError {
   TabletCover cover;
 };
 
+/// Mean and half of the range of some values, at least one; of one: itself.
+std::string spread_text(const std::vector<double>& values, int digits);
+
 struct Crossings {
   std::int64_t of_patches = 0;  ///< pairs of triangles, one of a patch, that cross on tablet or envelope
   std::int64_t of_surface = 0;  ///< pairs of the surface itself

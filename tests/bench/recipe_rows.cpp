@@ -8,16 +8,6 @@
 namespace dubsar {
 namespace {
 
-/// Mean and half of the range.
-std::string with_range(const std::vector<double>& values, int digits) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  const double mean = sum / static_cast<double>(values.size());
-  if (values.size() == 1) return fmt::format("{:.{}f}", mean, digits);
-  return fmt::format("{:.{}f} ± {:.{}f}", mean, digits, 0.5 * (*most - *least), digits);
-}
-
 /// A column of the table.
 struct Figure {
   const char* head;
@@ -104,7 +94,7 @@ void print_recipe_rows(const Dims& dims, std::uint64_t seed, int seeds, const st
     if (found[0].empty() && remarks.empty()) continue;
     fmt::print("| {} |", name);
     for (std::size_t f = 0; f < found.size(); ++f)
-      fmt::print(" {} |", found[f].empty() ? "" : with_range(found[f], kFigures[f].digits));
+      fmt::print(" {} |", found[f].empty() ? "" : spread_text(found[f], kFigures[f].digits));
     fmt::print(" {}{} |\n", wedges, remarks);
     std::fflush(stdout);
   }

@@ -52,16 +52,6 @@ constexpr NamedScanner kOfAFullTurn[] = {{"cone", "ideal"},
                                          {"cone 10 degrees strong", "strong,cone=10"},
                                          {"cone strong small wedges", "strong", 4.0}};
 
-/// Mean and half of the range.
-std::string spread(const std::vector<double>& values, int digits) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  const double mean = sum / static_cast<double>(values.size());
-  if (values.size() == 1) return fmt::format("{:.{}f}", mean, digits);
-  return fmt::format("{:.{}f} ± {:.{}f}", mean, digits, 0.5 * (*most - *least), digits);
-}
-
 }  // namespace
 
 std::vector<ContactRow> scanner_rows(const Dims& dims, std::uint64_t seed) {
@@ -112,8 +102,9 @@ void print_scanner_rows(const Dims& dims, std::uint64_t seed, int seeds, const s
     if (kept.empty())
       fmt::print("| {} | 0 | | | | | | {}{} |\n", name, wedges, remarks);
     else
-      fmt::print("| {} | {} | {} | {} | {} | {} | {} | {}{} |\n", name, spread(kept, 3), spread(ratio, 2),
-                 spread(rms, 3), spread(shift, 2), spread(recall, 3), spread(pores, 2), wedges, remarks);
+      fmt::print("| {} | {} | {} | {} | {} | {} | {} | {}{} |\n", name, spread_text(kept, 3), spread_text(ratio, 2),
+                 spread_text(rms, 3), spread_text(shift, 2), spread_text(recall, 3), spread_text(pores, 2), wedges,
+                 remarks);
     std::fflush(stdout);
   }
 }
