@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "app/cli/config_folder.h"
@@ -13,6 +16,7 @@
 #include "app/publish/video.h"
 #include "core/base/numbers/units.h"
 #include "core/base/system/budget.h"
+#include "core/base/system/child_process.h"
 #include "core/volume/formats/import_hdf5.h"
 #include "devices/camera/capture.h"
 #include "devices/device_list.h"
@@ -97,12 +101,36 @@ Finding check_ffmpeg() {
   return {"ffmpeg", "note", "not here: films are written as single pictures", "apt install ffmpeg"};
 }
 
-Finding check_headset() {
+Finding headset_here() {
   const HeadsetFacts facts = headset_facts();
   return {"openxr", facts.present ? "ok" : "note", facts.words, ""};
 }
 
-Result<VerbResult> run() {
+/// In a process of its own: the runtime is other people's code, which may crash or hang.
+Finding check_headset() {
+  constexpr auto kLongest = std::chrono::seconds(15);
+  std::error_code ignored;
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe", ignored).string();
+  const auto note = [](std::string words) { return Finding{"openxr", "note", std::move(words), ""}; };
+  auto child = ChildProcess::start({program, "doctor", "--headset", "--json", "-"});
+  if (!child) return note(child.error().message);
+  std::array<std::string, 2> said;
+  for (const auto end = std::chrono::steady_clock::now() + kLongest; child->read(said);)
+    if (std::chrono::steady_clock::now() > end) {
+      child->kill();
+      return note(fmt::format("the runtime does not answer within {} s; start or restart it", kLongest.count()));
+    }
+  const int code = child->wait();
+  const nlohmann::json answer = nlohmann::json::parse(said[0], nullptr, false);
+  if (code == 0 && answer.is_object() && answer.contains("findings"))
+    for (const nlohmann::json& each : answer["findings"])
+      return {"openxr", each.value("state", "note"), each.value("detail", ""), ""};
+  return note(code > 128
+                  ? fmt::format("the runtime crashes when it is asked (signal {}); mend or replace it", code - 128)
+                  : fmt::format("the runtime could not be asked (code {})", code));
+}
+
+std::vector<Finding> check_all() {
   std::vector<Finding> findings{
       check_gl(),
       check_memory_size(),
@@ -115,6 +143,11 @@ Result<VerbResult> run() {
   findings.push_back(check_windows());
   findings.push_back(check_ffmpeg());
   findings.push_back(check_headset());
+  return findings;
+}
+
+Result<VerbResult> run(bool headset) {
+  const std::vector<Finding> findings = headset ? std::vector{headset_here()} : check_all();
   VerbResult result;
   result.json["findings"] = nlohmann::json::array();
   std::string missing;
@@ -130,8 +163,10 @@ Result<VerbResult> run() {
 
 Verb add_doctor_verb(Arguments program) {
   Arguments command = program.command("doctor", "check this machine: graphics, memory, disk, file filters");
+  const auto headset = std::make_shared<bool>(false);
+  command.flag("--headset", *headset, "only the headset and its runtime, loaded into this very process");
   command.footer("Examples:\n  dubsar doctor\n  dubsar doctor --json -");
-  return {command, [](const CommonOptions&, Progress&) { return run(); }};
+  return {command, [headset](const CommonOptions&, Progress&) { return run(*headset); }};
 }
 
 }  // namespace dubsar::app

@@ -109,6 +109,7 @@ class Loop {
   ViewResult out_;
   std::int64_t steps_ = 0;
   int failures_ = 0;
+  bool wearer_ended_ = false;
 };
 
 std::string Loop::frame_file() const {
@@ -188,6 +189,8 @@ bool Loop::ends(TimestampNs start) {
     if (presenter_->ended()) presenter_->keep_open();
   }
   if (presenter_->ended() && !viewer_->may_end()) presenter_->keep_open();
+  const bool before = std::exchange(wearer_ended_, viewer_->stage().display_ended());
+  if (options_.guide == nullptr && wearer_ended_ && !before && viewer_->may_end()) return true;
   if (presenter_->ended() || viewer_->over(now)) return true;
   if (!simulated() && options_.time.outdated && options_.time.outdated()) return true;
   if (options_.time.longest_s <= 0) return false;

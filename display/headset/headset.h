@@ -52,34 +52,42 @@ struct WearerFrame {
   std::array<WornHand, 2> hands{};
   std::array<WornController, 2> controllers{};
   std::optional<double> floor_m;  ///< height of the floor
+  TimestampNs period = 0;         ///< between two pictures of the headset
+  bool seen = true;               ///< false: the runtime shows no picture of ours now, so none need be made
   bool recentred = false;         ///< the wearer asked for a new middle since the last picture
 };
+
+/// How pictures lie over the room that a see-through headset shows.
+enum class SeeThrough { kNo, kAlpha, kAdditive };
 
 /// Calls from the thread of one GL context, which is current and outlives it.
 class Headset {
  public:
   virtual ~Headset() = default;
 
-  /// "NAME VERSION" of the runtime, and the device's own name.
-  virtual std::string runtime() const = 0;
-  virtual std::string device() const = 0;
-  virtual PixelSize eye_size() const = 0;  ///< what the runtime recommends
-  virtual bool has_hands() const = 0;
+  /// Pixels of an eye's picture as the runtime recommends them; of the newest headset after a loss. 0 x 0 before the
+  /// first was found.
+  virtual PixelSize eye_size() const = 0;
 
-  /// The next picture's moment: waits for its turn (about one refresh). Nothing while nobody wears the headset, the
-  /// session is not ready or was lost; it is tried again by itself, reason() says why. A picture that was begun and not
-  /// ended is given back empty.
+  /// The next picture's moment: waits for its turn (about one refresh). Nothing while there is no runtime or headset,
+  /// nobody wears it, the session is not ready or was lost; it is tried again by itself, reason() says why. A picture
+  /// that was begun and not ended is given back empty.
   virtual std::optional<WearerFrame> begin() = 0;
-  /// Hands in layers 0 and 1 for the eyes of the last begin(). Errors are those of GL; a session that is lost is none.
+  /// Hands in layers 0 and 1 for the eyes of the last begin(). Errors are ours of GL; those that the runtime leaves
+  /// are dropped, and a session that is lost is none.
   virtual Result<void> end(const ViewArray& views) = 0;
   virtual std::string reason() const = 0;  ///< why begin() gave nothing; empty: it gave something
+  /// The wearer chose "quit" in the runtime's menu. A new session is asked for 10 s later: who shows things for one
+  /// person ends before, a gallery waits for the next wearer.
+  virtual bool ended() const { return false; }
 };
 
-/// The headset that this machine's OpenXR runtime has. kUnavailable, with what to do: no loader in this build, no
-/// runtime, no headset, no OpenGL. Needs no GL context yet.
-Result<std::unique_ptr<Headset>> open_headset();
+/// The headset that this machine's OpenXR runtime has, or will have. Nothing is opened before begin(): a runtime that
+/// is started later is found then. kUnavailable: no loader in this build.
+Result<std::unique_ptr<Headset>> make_headset(SeeThrough wish = SeeThrough::kNo);
 
-/// One sentence for `dubsar doctor`: the runtime and what it can, or why there is none.
+/// One sentence for `dubsar doctor`: the runtime and what it can, or why there is none. Loads other people's code: ask
+/// in a process of its own.
 struct HeadsetFacts {
   bool present = false;
   std::string words;

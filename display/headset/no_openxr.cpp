@@ -8,7 +8,9 @@ constexpr const char* kWhy =
     "this build has no OpenXR: install libopenxr-dev and libopenxr-loader1 (./do deps), configure and build again";
 }
 
-Result<std::unique_ptr<Headset>> open_headset() { return fail(ErrorKind::kUnavailable, "display openxr: {}", kWhy); }
+Result<std::unique_ptr<Headset>> make_headset(SeeThrough) {
+  return fail(ErrorKind::kUnavailable, "display openxr: {}", kWhy);
+}
 
 HeadsetFacts headset_facts() { return {false, kWhy}; }
 

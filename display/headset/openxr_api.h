@@ -20,11 +20,40 @@
 #undef Bool
 
 #include <string>
+#include <utility>
 
 #include "core/base/numbers/pose.h"
 #include "core/base/result.h"
 
+// Newer than the headers of Debian 12; values and members are those of Khronos' registry.
+#ifndef XR_EXT_hand_tracking_data_source
+#define XR_EXT_hand_tracking_data_source 1
+#define XR_EXT_HAND_TRACKING_DATA_SOURCE_EXTENSION_NAME "XR_EXT_hand_tracking_data_source"
+// NOLINTBEGIN(readability-identifier-naming)
+inline constexpr auto XR_TYPE_HAND_TRACKING_DATA_SOURCE_INFO_EXT = static_cast<XrStructureType>(1000428000);
+inline constexpr auto XR_TYPE_HAND_TRACKING_DATA_SOURCE_STATE_EXT = static_cast<XrStructureType>(1000428001);
+enum XrHandTrackingDataSourceEXT : std::int32_t {
+  XR_HAND_TRACKING_DATA_SOURCE_UNOBSTRUCTED_EXT = 1,
+  XR_HAND_TRACKING_DATA_SOURCE_CONTROLLER_EXT = 2,
+};
+struct XrHandTrackingDataSourceInfoEXT {
+  XrStructureType type;
+  const void* next;
+  std::uint32_t requestedDataSourceCount;
+  XrHandTrackingDataSourceEXT* requestedDataSources;
+};
+struct XrHandTrackingDataSourceStateEXT {
+  XrStructureType type;
+  void* next;
+  XrBool32 isActive;
+  XrHandTrackingDataSourceEXT dataSource;
+};
+// NOLINTEND(readability-identifier-naming)
+#endif
+
 namespace dubsar::openxr {
+
+inline constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 
 /// "XR_ERROR_...", without asking a runtime that may be gone.
 std::string name_of(XrResult result);

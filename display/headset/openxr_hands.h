@@ -16,7 +16,7 @@ class HandInput {
   HandInput(const HandInput&) = delete;
   HandInput& operator=(const HandInput&) = delete;
 
-  /// Fills hands and controllers as they will be at `time`, in `base`.
+  /// Fills hands and controllers as they will be at `time`, in `base`. For a session that has the input focus.
   void locate(XrSpace base, XrTime time, WearerFrame& frame);
 
  private:
@@ -25,6 +25,8 @@ class HandInput {
   Result<XrAction> make_action(const char* name, const char* words, XrActionType type);
   void suggest(const char* profile, const char* squeeze, const char* select);
   void locate_controllers(XrSpace base, XrTime time, WearerFrame& frame);
+  Result<void> make_trackers(XrSession session);
+  Door& door() const noexcept { return instance_->door(); }
 
   const Instance* instance_;
   XrSession session_ = XR_NULL_HANDLE;

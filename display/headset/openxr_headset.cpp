@@ -1,4 +1,4 @@
-// The door: sessions that come and go behind one headset.
+// Sessions that come and go behind one headset.
 
 #include "core/base/system/log.h"
 #include "display/headset/openxr_session.h"
@@ -9,25 +9,21 @@ namespace openxr {
 namespace {
 
 constexpr TimestampNs kRetryNs = 1'000'000'000;
+constexpr TimestampNs kAfterExitNs = 10'000'000'000;  // whoever chose to end does not want to be taken again at once
 
 class OpenXrHeadset final : public Headset {
  public:
-  explicit OpenXrHeadset(std::unique_ptr<Instance> instance)
-      : instance_(std::move(instance)),
-        runtime_(instance_->runtime()),
-        device_(instance_->device()),
-        hands_(instance_->has_hands()),
-        size_{static_cast<int>(instance_->eyes()[0].recommendedImageRectWidth),
-              static_cast<int>(instance_->eyes()[0].recommendedImageRectHeight)} {}
+  explicit OpenXrHeadset(SeeThrough wish) : wish_(wish) {}
 
-  std::string runtime() const override { return runtime_; }
-  std::string device() const override { return device_; }
   PixelSize eye_size() const override { return size_; }
-  bool has_hands() const override { return hands_; }
   std::string reason() const override { return reason_; }
+  bool ended() const override { return ended_; }
 
   std::optional<WearerFrame> begin() override {
-    if (!session_ && !open_again()) return std::nullopt;
+    if (!session_) {
+      if (open_again()) reason_ = fmt::format("openxr: {} gets ready", device_);
+      return std::nullopt;  // pictures of its size are made from the next turn on
+    }
     if (const auto followed = session_->follow_events(); !followed) return lost(followed.error());
     if (!session_->running()) {
       reason_ = fmt::format("openxr: {} is not worn or not ready yet", device_);
@@ -40,9 +36,12 @@ class OpenXrHeadset final : public Headset {
   }
 
   Result<void> end(const ViewArray& views) override {
+    DUBSAR_TRY(check_gl("drawing for a headset"));
     if (!session_ || !session_->begun()) return {};
     if (const auto shown = session_->end(&views); !shown) lost(shown.error());
-    return check_gl("showing pictures in a headset");
+    const GLenum own = door_.take_own_error();
+    if (own == GL_NO_ERROR) return {};
+    return fail(ErrorKind::kInternal, "gl: error 0x{:04x} while copying pictures for a headset", own);
   }
 
  private:
@@ -50,14 +49,19 @@ class OpenXrHeadset final : public Headset {
     const TimestampNs now = SteadyClock().now();
     if (now < retry_at_) return false;
     retry_at_ = now + kRetryNs;
+    ended_ = false;
+    door_.bind_context();
     if (!instance_) {
-      auto instance = Instance::open();
-      if (!instance) return reason_ = instance.error().message, false;
+      auto instance = Instance::open(door_, wish_);
+      if (!instance) return tell(instance.error().message), false;
       instance_ = *std::move(instance);
+      device_ = instance_->device();
+      const XrViewConfigurationView& eye = instance_->eyes()[0];
+      size_ = {static_cast<int>(eye.recommendedImageRectWidth), static_cast<int>(eye.recommendedImageRectHeight)};
     }
     auto session = Session::create(*instance_);
     if (!session) {
-      reason_ = session.error().message;
+      tell(session.error().message);
       instance_.reset();  // the runtime may have gone with its headset
       return false;
     }
@@ -65,36 +69,38 @@ class OpenXrHeadset final : public Headset {
     return true;
   }
   std::nullopt_t lost(const Error& error) {
-    reason_ = error.message;
-    log_warning("{}", reason_);
+    ended_ = session_->exited();
+    tell(error.message);
     session_.reset();
-    retry_at_ = 0;
+    if (ended_) instance_.reset();
+    retry_at_ = ended_ ? SteadyClock().now() + kAfterExitNs : 0;
     return std::nullopt;
   }
+  /// Once, until there is something else to tell.
+  void tell(const std::string& reason) {
+    if (reason != told_) log_warning("{}", reason);
+    told_ = reason_ = reason;
+  }
 
+  const SeeThrough wish_;
+  Door door_;
   std::unique_ptr<Instance> instance_;
   std::unique_ptr<Session> session_;  // goes first
-  std::string runtime_, device_, reason_;
-  bool hands_;
-  PixelSize size_;
+  std::string device_, reason_, told_;
+  PixelSize size_{};
+  bool ended_ = false;
   TimestampNs retry_at_ = 0;
 };
 
 }  // namespace
 }  // namespace openxr
 
-Result<std::unique_ptr<Headset>> open_headset() {
-  DUBSAR_ASSIGN(auto instance, openxr::Instance::open());
-  return std::make_unique<openxr::OpenXrHeadset>(std::move(instance));
-}
+Result<std::unique_ptr<Headset>> make_headset(SeeThrough wish) { return std::make_unique<openxr::OpenXrHeadset>(wish); }
 
 HeadsetFacts headset_facts() {
-  const auto instance = openxr::Instance::open();
-  if (!instance) {
-    const auto runtime = openxr::Instance::open(false);
-    return {false, runtime ? fmt::format("runtime {}: {}", (*runtime)->runtime(), instance.error().message)
-                           : instance.error().message};
-  }
+  openxr::Door door;
+  const auto instance = openxr::Instance::open(door, SeeThrough::kNo);
+  if (!instance) return {false, instance.error().message};
   return {true, fmt::format("runtime {}, headset {}{}{}", (*instance)->runtime(), (*instance)->device(),
                             (*instance)->has_hands() ? ", hands" : ", no hands",
                             (*instance)->has_egl() ? ", EGL and GLX" : ", GLX only")};

@@ -8,8 +8,7 @@
 namespace dubsar::openxr {
 namespace {
 
-constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-constexpr XrDuration kPatience = 500'000'000;  // for an image that the compositor still shows
+constexpr XrDuration kPatience = 50'000'000;  // for an image that the compositor still shows, a frame
 
 struct Binding {
   XrGraphicsBindingEGLMNDX egl = made<XrGraphicsBindingEGLMNDX>(XR_TYPE_GRAPHICS_BINDING_EGL_MNDX);
@@ -63,7 +62,7 @@ Result<std::unique_ptr<Session>> Session::create(Instance& instance) {
   if (requirements == nullptr)
     return fail(ErrorKind::kUnavailable, "openxr: runtime {} does not say which OpenGL it needs", instance.runtime());
   auto range = made<XrGraphicsRequirementsOpenGLKHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR);
-  DUBSAR_TRY(check(requirements(handle, instance.system(), &range), "asking which OpenGL is needed"));
+  DUBSAR_TRY(check(instance.door()(requirements, handle, instance.system(), &range), "asking which OpenGL is needed"));
   if (XR_MAKE_VERSION(4, 5, 0) < range.minApiVersionSupported)
     return fail(ErrorKind::kUnavailable, "openxr: runtime {} needs OpenGL {}.{}, expected 4.5 or less",
                 instance.runtime(), XR_VERSION_MAJOR(range.minApiVersionSupported),
@@ -73,7 +72,13 @@ Result<std::unique_ptr<Session>> Session::create(Instance& instance) {
   auto info = made<XrSessionCreateInfo>(XR_TYPE_SESSION_CREATE_INFO);
   info.next = binding.which;
   info.systemId = instance.system();
-  DUBSAR_TRY(check(xrCreateSession(handle, &info, &out->session_), "beginning a session"));
+  const XrResult begun = instance.door()(xrCreateSession, handle, &info, &out->session_);
+  if (begun == XR_ERROR_GRAPHICS_DEVICE_INVALID)
+    return fail(ErrorKind::kUnavailable,
+                "openxr: runtime {} takes no OpenGL session though it lists XR_KHR_opengl_enable, expected one that "
+                "does; panels of DisplayXR take Vulkan only",
+                instance.runtime());
+  DUBSAR_TRY(check(begun, "beginning a session"));
   DUBSAR_TRY(out->make_spaces());
   DUBSAR_ASSIGN(out->hands_, HandInput::create(instance, out->session_));
   DUBSAR_TRY(out->make_chains());
@@ -83,28 +88,28 @@ Result<std::unique_ptr<Session>> Session::create(Instance& instance) {
 Session::~Session() {
   hands_.reset();
   for (const Chain& chain : chains_)
-    if (chain.handle != XR_NULL_HANDLE) xrDestroySwapchain(chain.handle);
+    if (chain.handle != XR_NULL_HANDLE) door()(xrDestroySwapchain, chain.handle);
   for (const XrSpace space : {stage_, local_})
-    if (space != XR_NULL_HANDLE) xrDestroySpace(space);
-  if (session_ != XR_NULL_HANDLE) xrDestroySession(session_);
+    if (space != XR_NULL_HANDLE) door()(xrDestroySpace, space);
+  if (session_ != XR_NULL_HANDLE) door()(xrDestroySession, session_);
 }
 
 Result<void> Session::make_spaces() {
   auto info = made<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
   info.poseInReferenceSpace.orientation.w = 1.0f;
   info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
-  DUBSAR_TRY(check(xrCreateReferenceSpace(session_, &info, &local_), "finding the room's middle"));
+  DUBSAR_TRY(check(door()(xrCreateReferenceSpace, session_, &info, &local_), "finding the room's middle"));
   info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_STAGE;
-  if (XR_FAILED(xrCreateReferenceSpace(session_, &info, &stage_)))
+  if (XR_FAILED(door()(xrCreateReferenceSpace, session_, &info, &stage_)))
     stage_ = XR_NULL_HANDLE;  // nobody measured the floor
   return {};
 }
 
 Result<void> Session::make_chains() {
   std::uint32_t count = 0;
-  DUBSAR_TRY(check(xrEnumerateSwapchainFormats(session_, 0, &count, nullptr), "asking for formats"));
+  DUBSAR_TRY(check(door()(xrEnumerateSwapchainFormats, session_, 0, &count, nullptr), "asking for formats"));
   std::vector<std::int64_t> formats(count);
-  DUBSAR_TRY(check(xrEnumerateSwapchainFormats(session_, count, &count, formats.data()), "asking for formats"));
+  DUBSAR_TRY(check(door()(xrEnumerateSwapchainFormats, session_, count, &count, formats.data()), "asking for formats"));
   if (std::find(formats.begin(), formats.end(), GL_SRGB8_ALPHA8) == formats.end())
     return fail(ErrorKind::kUnavailable, "openxr: runtime {} has no pictures of format GL_SRGB8_ALPHA8 among its {}",
                 instance_->runtime(), count);
@@ -118,13 +123,13 @@ Result<void> Session::make_chains() {
     info.height = size.recommendedImageRectHeight;
     info.faceCount = info.arraySize = info.mipCount = 1;
     Chain& chain = chains_[eye];
-    DUBSAR_TRY(check(xrCreateSwapchain(session_, &info, &chain.handle), "making pictures"));
+    DUBSAR_TRY(check(door()(xrCreateSwapchain, session_, &info, &chain.handle), "making pictures"));
     chain.width = static_cast<int>(info.width);
     chain.height = static_cast<int>(info.height);
-    DUBSAR_TRY(check(xrEnumerateSwapchainImages(chain.handle, 0, &count, nullptr), "asking for pictures"));
+    DUBSAR_TRY(check(door()(xrEnumerateSwapchainImages, chain.handle, 0, &count, nullptr), "asking for pictures"));
     chain.images.assign(count, made<XrSwapchainImageOpenGLKHR>(XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR));
-    DUBSAR_TRY(check(xrEnumerateSwapchainImages(chain.handle, count, &count,
-                                                reinterpret_cast<XrSwapchainImageBaseHeader*>(chain.images.data())),
+    DUBSAR_TRY(check(door()(xrEnumerateSwapchainImages, chain.handle, count, &count,
+                            reinterpret_cast<XrSwapchainImageBaseHeader*>(chain.images.data())),
                      "asking for pictures"));
   }
   return {};
@@ -133,7 +138,7 @@ Result<void> Session::make_chains() {
 Result<void> Session::start_running() {
   auto info = made<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
   info.primaryViewConfigurationType = kStereo;
-  DUBSAR_TRY(check(xrBeginSession(session_, &info), "beginning to show pictures"));
+  DUBSAR_TRY(check(door()(xrBeginSession, session_, &info), "beginning to show pictures"));
   running_ = true;
   return {};
 }
@@ -145,19 +150,24 @@ Result<void> Session::follow_events() {
     if (!more) return {};
     if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING)
       return fail(ErrorKind::kUnavailable, "openxr: runtime {} is going away", instance_->runtime());
-    if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) recentred_ = true;
+    if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) {
+      const auto& change = *reinterpret_cast<const XrEventDataReferenceSpaceChangePending*>(&event);
+      if (change.referenceSpaceType == XR_REFERENCE_SPACE_TYPE_LOCAL) recentred_at_ = change.changeTime;
+    }
     if (event.type != XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) continue;
     const auto& change = *reinterpret_cast<const XrEventDataSessionStateChanged*>(&event);
     if (change.session != session_) continue;
+    state_ = change.state;
     if (change.state == XR_SESSION_STATE_READY) {
       DUBSAR_TRY(start_running());
     } else if (change.state == XR_SESSION_STATE_STOPPING) {
       running_ = begun_ = false;
-      DUBSAR_TRY(check(xrEndSession(session_), "pausing"));
+      DUBSAR_TRY(check(door()(xrEndSession, session_), "pausing"));
     } else if (change.state == XR_SESSION_STATE_LOSS_PENDING) {
       return fail(ErrorKind::kUnavailable, "openxr: the headset was lost; it is waited for");
     } else if (change.state == XR_SESSION_STATE_EXITING) {
-      return fail(ErrorKind::kUnavailable, "openxr: runtime {} ended the session", instance_->runtime());
+      exited_ = true;
+      return fail(ErrorKind::kUnavailable, "openxr: the wearer ended the session");
     }
   }
 }
@@ -166,7 +176,7 @@ TimestampNs Session::steady_from(XrTime time) const {
   const auto convert =
       function_of<PFN_xrConvertTimeToTimespecTimeKHR>(instance_->handle(), "xrConvertTimeToTimespecTimeKHR");
   timespec steady{};
-  if (instance_->has_time() && convert != nullptr && XR_SUCCEEDED(convert(instance_->handle(), time, &steady)))
+  if (instance_->has_time() && convert != nullptr && XR_SUCCEEDED(door()(convert, instance_->handle(), time, &steady)))
     return static_cast<TimestampNs>(steady.tv_sec) * 1'000'000'000 + steady.tv_nsec;
   return SteadyClock().now() + frame_.predictedDisplayPeriod;  // about: a frame is begun one refresh before
 }
@@ -174,7 +184,7 @@ TimestampNs Session::steady_from(XrTime time) const {
 std::optional<double> Session::floor_at(XrTime time) const {
   if (stage_ == XR_NULL_HANDLE) return std::nullopt;
   auto location = made<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
-  if (XR_FAILED(xrLocateSpace(stage_, local_, time, &location)) ||
+  if (XR_FAILED(door()(xrLocateSpace, stage_, local_, time, &location)) ||
       (location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0)
     return std::nullopt;
   return location.pose.position.y;
@@ -183,8 +193,8 @@ std::optional<double> Session::floor_at(XrTime time) const {
 Result<std::optional<WearerFrame>> Session::begin() {
   if (begun_) DUBSAR_TRY(end(nullptr));
   frame_ = made<XrFrameState>(XR_TYPE_FRAME_STATE);
-  DUBSAR_TRY(check(xrWaitFrame(session_, nullptr, &frame_), "waiting for a frame"));
-  DUBSAR_TRY(check(xrBeginFrame(session_, nullptr), "beginning a frame"));
+  DUBSAR_TRY(check(door()(xrWaitFrame, session_, nullptr, &frame_), "waiting for a frame"));
+  DUBSAR_TRY(check(door()(xrBeginFrame, session_, nullptr), "beginning a frame"));
   begun_ = true;
   WearerFrame out;
   out.time = SteadyClock().now();
@@ -194,43 +204,63 @@ Result<std::optional<WearerFrame>> Session::begin() {
   where.displayTime = frame_.predictedDisplayTime;
   where.space = local_;
   auto state = made<XrViewState>(XR_TYPE_VIEW_STATE);
-  views_.fill(made<XrView>(XR_TYPE_VIEW));
+  views_.assign(instance_->view_count(), made<XrView>(XR_TYPE_VIEW));
   std::uint32_t count = 0;
-  DUBSAR_TRY(check(xrLocateViews(session_, &where, &state, 2, &count, views_.data()), "finding the eyes"));
+  DUBSAR_TRY(check(door()(xrLocateViews, session_, &where, &state, instance_->view_count(), &count, views_.data()),
+                   "finding the eyes"));
   constexpr XrViewStateFlags kPlaced = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
-  if (count != 2 || (state.viewStateFlags & kPlaced) != kPlaced) return std::optional<WearerFrame>();
+  if (count < 2 || (state.viewStateFlags & kPlaced) != kPlaced) return std::optional<WearerFrame>();
   for (std::size_t eye = 0; eye < 2; ++eye) {
     const XrFovf& fov = views_[eye].fov;
     out.eyes[eye] = {pose_of(views_[eye].pose), std::tan(fov.angleLeft), std::tan(fov.angleRight),
                      std::tan(fov.angleDown), std::tan(fov.angleUp)};
   }
-  hands_->locate(local_, frame_.predictedDisplayTime, out);
+  if (focused()) hands_->locate(local_, frame_.predictedDisplayTime, out);
   out.floor_m = floor_at(frame_.predictedDisplayTime);
-  out.recentred = std::exchange(recentred_, false);
+  out.seen = frame_.shouldRender == XR_TRUE;
+  out.period = frame_.predictedDisplayPeriod;
+  out.recentred = recentred_at_ && frame_.predictedDisplayTime >= *recentred_at_;
+  if (out.recentred) recentred_at_.reset();
   return std::optional<WearerFrame>(out);
 }
 
-Result<void> Session::copy_eye(const ViewArray& views, std::size_t eye) {
-  const Chain& chain = chains_[eye];
-  std::uint32_t index = 0;
-  DUBSAR_TRY(check(xrAcquireSwapchainImage(chain.handle, nullptr, &index), "taking a picture"));
+Result<bool> Session::copy_eye(const ViewArray& views, std::size_t eye) {
+  Chain& chain = chains_[eye];
+  if (!chain.acquired) {
+    std::uint32_t index = 0;
+    DUBSAR_TRY(check(door()(xrAcquireSwapchainImage, chain.handle, nullptr, &index), "taking a picture"));
+    chain.acquired = index;
+  }
   auto wait = made<XrSwapchainImageWaitInfo>(XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
   wait.timeout = kPatience;
-  const XrResult ready = xrWaitSwapchainImage(chain.handle, &wait);
+  const XrResult ready = door()(xrWaitSwapchainImage, chain.handle, &wait);
+  if (ready == XR_TIMEOUT_EXPIRED) return false;
+  DUBSAR_TRY(check(ready, "waiting for a picture"));
+  const std::uint32_t index = *std::exchange(chain.acquired, std::nullopt);
   // Both are sRGB-coded bytes: copied as they are.
-  if (ready == XR_SUCCESS && index < chain.images.size())
+  if (index < chain.images.size())
     glCopyImageSubData(views.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, static_cast<GLint>(eye), chain.images[index].image,
                        GL_TEXTURE_2D, 0, 0, 0, 0, std::min(views.width(), chain.width),
                        std::min(views.height(), chain.height), 1);
-  DUBSAR_TRY(check(xrReleaseSwapchainImage(chain.handle, nullptr), "giving a picture back"));
-  return check(ready, "waiting for a picture");
+  DUBSAR_TRY(check(door()(xrReleaseSwapchainImage, chain.handle, nullptr), "giving a picture back"));
+  return true;
+}
+
+Result<bool> Session::copy_eyes(const ViewArray& views) {
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    DUBSAR_ASSIGN(const bool copied, copy_eye(views, eye));
+    if (!copied) return false;
+  }
+  return true;
 }
 
 Result<void> Session::end(const ViewArray* views) {
-  const bool shown = views != nullptr && frame_.shouldRender == XR_TRUE;
+  bool shown = false;
+  if (views != nullptr && frame_.shouldRender == XR_TRUE) {
+    DUBSAR_ASSIGN(shown, copy_eyes(*views));
+  }
   std::array<XrCompositionLayerProjectionView, 2> eyes{};
   for (std::size_t eye = 0; shown && eye < 2; ++eye) {
-    DUBSAR_TRY(copy_eye(*views, eye));
     eyes[eye] = made<XrCompositionLayerProjectionView>(XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW);
     eyes[eye].pose = views_[eye].pose;
     eyes[eye].fov = views_[eye].fov;
@@ -239,6 +269,8 @@ Result<void> Session::end(const ViewArray* views) {
                                            std::min(views->height(), chains_[eye].height)};
   }
   auto layer = made<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
+  if (instance_->blend() == XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND)
+    layer.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
   layer.space = local_;
   layer.viewCount = 2;
   layer.views = eyes.data();
@@ -249,7 +281,7 @@ Result<void> Session::end(const ViewArray* views) {
   info.layerCount = shown ? 1 : 0;
   info.layers = shown ? &first : nullptr;
   begun_ = false;
-  return check(xrEndFrame(session_, &info), "showing a frame");
+  return check(door()(xrEndFrame, session_, &info), "showing a frame");
 }
 
 }  // namespace dubsar::openxr

@@ -19,6 +19,7 @@ class Session {
   /// Follows the runtime's events. kUnavailable, with what happened, when the session is over.
   Result<void> follow_events();
   bool running() const noexcept { return running_; }
+  bool exited() const noexcept { return exited_; }  ///< the wearer chose to end it
 
   /// kUnavailable when the session is lost; nothing when the runtime skips a frame.
   Result<std::optional<WearerFrame>> begin();
@@ -30,12 +31,17 @@ class Session {
     XrSwapchain handle = XR_NULL_HANDLE;
     std::vector<XrSwapchainImageOpenGLKHR> images;
     int width = 0, height = 0;
+    std::optional<std::uint32_t> acquired;  // an image that the compositor has not let go yet
   };
   explicit Session(Instance& instance) : instance_(&instance) {}
   Result<void> make_spaces();
   Result<void> make_chains();
   Result<void> start_running();
-  Result<void> copy_eye(const ViewArray& views, std::size_t eye);
+  /// False when the compositor still shows the image: it is waited for again at the next frame.
+  Result<bool> copy_eye(const ViewArray& views, std::size_t eye);
+  Result<bool> copy_eyes(const ViewArray& views);
+  Door& door() const noexcept { return instance_->door(); }
+  bool focused() const noexcept { return state_ == XR_SESSION_STATE_FOCUSED; }
   TimestampNs steady_from(XrTime time) const;
   std::optional<double> floor_at(XrTime time) const;
 
@@ -44,9 +50,11 @@ class Session {
   XrSpace local_ = XR_NULL_HANDLE, stage_ = XR_NULL_HANDLE;
   std::array<Chain, 2> chains_;
   std::unique_ptr<HandInput> hands_;
-  std::array<XrView, 2> views_{};
+  std::vector<XrView> views_;  // the first two are the eyes
   XrFrameState frame_{};
-  bool running_ = false, begun_ = false, recentred_ = false;
+  XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
+  std::optional<XrTime> recentred_at_;  // when LOCAL is a new one
+  bool running_ = false, begun_ = false, exited_ = false;
 };
 
 }  // namespace dubsar::openxr

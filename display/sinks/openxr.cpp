@@ -13,7 +13,8 @@ namespace dubsar {
 namespace {
 
 constexpr double kNearMm = 30.0, kFarMm = 20'000.0;
-constexpr double kNominalHeightMm = 300.0;  // of what a first camera shows while nobody wears the headset
+constexpr PixelSize kNominalEye{1440, 1600};  // until a headset was found
+constexpr double kNominalHeightMm = 300.0;    // of what a first camera shows while nobody wears the headset
 constexpr auto kNobodyThere = std::chrono::milliseconds(10);
 
 class OpenXrSink final : public OutputSink {
@@ -22,26 +23,27 @@ class OpenXrSink final : public OutputSink {
       : headset_(std::move(headset)), place_(place) {}
 
   SinkTraits traits() const noexcept override {
-    const PixelSize eye = headset_->eye_size();
     return {.name = "openxr",
             .views = 2,
-            .view = eye,
+            .view = eye_,
             .output = {screen_.window_w, screen_.window_h},
             .own_size = true,
-            .aspect = static_cast<double>(eye.width) / eye.height,
-            .worn = true};
+            .aspect = static_cast<double>(eye_.width) / eye_.height,
+            .worn = true,
+            .see_through = place_.see_through};
   }
   Result<void> configure(const Screen& screen) override {
     DUBSAR_TRY(check_screen(screen));
     screen_ = screen;
+    if (headset_->eye_size().width > 0) eye_ = headset_->eye_size();
     nominal_ = true;
+    wearer_.reset();
     return {};
   }
   /// The first ones after configure() are cameras of somebody before the place; then those of the wearer.
   std::span<const View> views(const Observer& viewer) override {
     if (std::exchange(nominal_, false) || !begin()) {
-      const PixelSize eye = headset_->eye_size();
-      const double half_h = 0.5 * kNominalHeightMm, half_w = half_h * eye.width / eye.height;
+      const double half_h = 0.5 * kNominalHeightMm, half_w = half_h * eye_.width / eye_.height;
       const WindowRect window{{-half_w, -half_h, 0}, {half_w, -half_h, 0}, {-half_w, half_h, 0}};
       return views_ = {viewer_view(window, viewer, viewer.left_mm), viewer_view(window, viewer, viewer.right_mm)};
     }
@@ -55,6 +57,12 @@ class OpenXrSink final : public OutputSink {
   std::optional<WearerFrame> wearer() const override { return wearer_; }
   void recentre() override { placed_ = false; }
   std::string note() const override { return headset_->reason(); }
+  bool outdated() const override {
+    const PixelSize eye = headset_->eye_size();
+    return eye.width > 0 && eye != eye_;
+  }
+  bool hidden() const override { return wearer_ && !wearer_->seen; }
+  bool ended() const override { return headset_->ended(); }
 
  private:
   bool begin() {
@@ -95,6 +103,7 @@ class OpenXrSink final : public OutputSink {
   std::unique_ptr<Headset> headset_;
   HeadsetPlace place_;
   Screen screen_;
+  PixelSize eye_ = kNominalEye;
   std::array<View, 2> views_;
   std::optional<WearerFrame> wearer_;  ///< of the frame that was begun, in the screen's frame
   Pose room_from_screen_;
@@ -112,7 +121,8 @@ Pose room_from_screen(const Pose& head, const std::optional<double>& floor_m, co
   ahead = glm::normalize(ahead);
   Pose out;
   out.position_m = head.position_m + place.distance_m * ahead;
-  out.position_m.y = floor_m ? *floor_m + place.height_m : head.position_m.y - place.below_m;
+  const double lowest = head.position_m.y - place.distance_m * std::tan(glm::radians(place.steepest_deg));
+  out.position_m.y = std::max(lowest, floor_m ? *floor_m + place.height_m : head.position_m.y - place.below_m);
   const double turn = std::atan2(-ahead.x, -ahead.z);  // about +Y, from +Z to the wearer
   out.rotation = glm::angleAxis(turn, glm::dvec3(0, 1, 0));
   return out;
@@ -144,8 +154,15 @@ Result<std::unique_ptr<OutputSink>> make_openxr_sink(SinkOptions options) {
   HeadsetPlace place;
   place.distance_m = options.number("distance", 0.2, 5.0, place.distance_m);
   place.height_m = options.number("height", 0.0, 3.0, place.height_m);
-  DUBSAR_TRY(options.finish("distance=, height="));
-  DUBSAR_ASSIGN(auto headset, open_headset());
+  const std::string blend = options.text("blend").value_or("opaque");
+  const SeeThrough wish = blend == "alpha"      ? SeeThrough::kAlpha
+                          : blend == "additive" ? SeeThrough::kAdditive
+                                                : SeeThrough::kNo;
+  if (wish == SeeThrough::kNo && blend != "opaque")
+    return fail(ErrorKind::kUsage, "display openxr: blend={} found, expected opaque, alpha or additive", blend);
+  DUBSAR_TRY(options.finish("distance=, height=, blend=opaque|alpha|additive"));
+  place.see_through = wish != SeeThrough::kNo;
+  DUBSAR_ASSIGN(auto headset, make_headset(wish));
   return openxr_sink(std::move(headset), place);
 }
 

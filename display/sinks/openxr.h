@@ -10,9 +10,11 @@ namespace dubsar {
 
 /// Where the middle of the object is put when the wearer says where "before me" is.
 struct HeadsetPlace {
-  double distance_m = 0.5;  ///< before the wearer's eyes, level
-  double height_m = 0.85;   ///< over the floor: a hand's breadth over a table. Without a known floor:
-  double below_m = 0.35;    ///< under the eyes
+  double distance_m = 0.5;     ///< before the wearer's eyes, level
+  double height_m = 0.85;      ///< over the floor: a hand's breadth over a table. Without a known floor:
+  double below_m = 0.2;        ///< under the eyes
+  double steepest_deg = 25.0;  ///< under straight ahead: half of what a headset shows below; a table is lifted to it
+  bool see_through = false;    ///< the room is seen where nothing is drawn
 };
 
 /// The room's frame from the screen's: origin at the object's middle, +Y up, +Z level towards the wearer, for a head
@@ -25,7 +27,8 @@ WearerFrame moved_to_screen(const WearerFrame& room, const Pose& room_from_scree
 /// The camera of an eye, whose frame is the screen's: millimetres, near and far planes of 30 mm and 20 m.
 View eye_view(const HeadsetEye& eye);
 
-/// Options: distance= (m), height= (m over the floor). kUnavailable without a runtime or a headset.
+/// Options: distance= (m), height= (m over the floor), blend=opaque|alpha|additive (see-through headsets). Waits for a
+/// runtime and a headset that are not there yet. kUnavailable: a build without OpenXR.
 Result<std::unique_ptr<OutputSink>> make_openxr_sink(SinkOptions options);
 
 /// The same with a headset of one's own.

@@ -40,6 +40,7 @@ struct SinkTraits {
   /// On a head: cameras are the wearer's own and new for every picture, whose turn the display waits for; objects stand
   /// in life size, and nothing lies over them.
   bool worn = false;
+  bool see_through = false;   ///< what is not covered shows the room: the background is nothing
   std::string file_suffix{};  ///< what files of this picture carry before the extension, e.g. "_qs8x6a0.75"
 };
 
@@ -63,6 +64,12 @@ class OutputSink {
   virtual void recentre() {}
   /// Why nothing reaches anybody's eyes at the moment; empty: something does.
   virtual std::string note() const { return {}; }
+  /// Of worn displays: another headset came, traits() hold after the next configure() only.
+  virtual bool outdated() const { return false; }
+  /// Of worn displays: the runtime shows none of our pictures now; the layers may stay as they are.
+  virtual bool hidden() const { return false; }
+  /// Of worn displays: the wearer chose to end; another session begins 10 s later.
+  virtual bool ended() const { return false; }
   /// Where the panel's lenses send the light of what was composed last; nothing for displays without lenses.
   virtual std::optional<PanelLight> light() const { return std::nullopt; }
 };

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace dubsar::testing {
@@ -22,6 +23,8 @@ struct MadePose {
 struct MadeFrame {
   std::int64_t predicted = 0, displayed = 0;  ///< what xrWaitFrame said last, and what the application answered
   int layers = 0;
+  std::uint64_t layer_flags = 0;
+  int blend = 0;  ///< XrEnvironmentBlendMode
   std::array<MadePose, 2> poses{};
   std::array<std::array<float, 4>, 2> fov{};          ///< left, right, up, down
   std::array<std::vector<std::uint8_t>, 2> red{};     ///< the eyes' pictures, rows from below
@@ -49,9 +52,46 @@ struct MadeHands {
   MadePose grip{};
 };
 
+/// What a runtime may be without.
+struct MadeLacks {
+  bool newer_api = false;               ///< no instance for an application of more than 1.0
+  bool gl = false, gl_session = false;  ///< does not list OpenGL; lists it and begins no session of it
+  bool egl = false, hands = false, time = false;
+};
+
+/// What runtimes do that nobody would expect of a library; seen at real ones or told of them in their trackers.
+struct MadeManners {
+  std::string gl_error_after;           ///< the call that leaves a GL error behind, e.g. "xrEndFrame"
+  std::string context_taken_by;         ///< the call that leaves no GL context current
+  bool refuses_gl_errors = false;       ///< takes no picture while a GL error of the application waits
+  bool hand_source = false;             ///< tells seen hands from those of controllers
+  bool hands_from_controllers = false;  ///< closes fingers round a controller that is held
+  bool spoils_gl_state = false;
+  bool hidden = false;  ///< shows nothing of ours
+  MadeLacks lacks;
+  int views = 2;  ///< counted under PRIMARY_STEREO
+  int eye_px = 240;
+  int busy_waits = 0;                                         ///< time-outs before an image is let go, counted down
+  int recentre_lead = 0;                                      ///< frames from telling a new middle to having it
+  std::vector<int> blends{1};                                 ///< XrEnvironmentBlendMode, the favourite first
+  std::vector<std::int64_t> formats{0x881A, 0x8C43, 0x8058};  ///< RGBA16F, SRGB8_ALPHA8, RGBA8
+};
+
+/// XrSessionState, for tests that know nothing of OpenXR's headers.
+enum class XrState {
+  kIdle = 1,
+  kReady = 2,
+  kSynchronized = 3,
+  kVisible = 4,
+  kFocused = 5,
+  kStopping = 6,
+  kExiting = 8
+};
+
 /// Taken when they are met.
 struct MadeFaults {
   bool lose_session = false, no_headset = false, recentre = false, end_instance = false;
+  std::vector<XrState> states;  ///< to be told of, in order
 };
 
 /// Handles that were given and not taken back.
@@ -63,12 +103,13 @@ struct MadeHandles {
 struct MadeFacts {
   MadeWearer wearer;
   MadeHands hands;
+  MadeManners manners;
   MadeFaults faults;
   bool read_pictures = true;
   // What happened.
   std::vector<MadeFrame> frames;
   MadeHandles alive;
-  int sessions_ever = 0, wrong_calls = 0;
+  int sessions_ever = 0, instances_ever = 0, wrong_calls = 0;
   const char* binding = "";  ///< "EGL", "GLX"
   double now_s = 0.0;        ///< of the last xrWaitFrame: its display time
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "tests/openxr_runtime/runtime_state.h"
@@ -40,13 +42,30 @@ MadePose in_space(const MadePose& thing, const MadeSpace& base, double t) {
   return {back * (thing.position - frame.position), back * thing.rotation};
 }
 
+void leave_traces(const char* call) {
+  const MadeManners& manners = state().headset.manners;
+  if (manners.gl_error_after == call) glEnable(0x1234);
+  if (manners.context_taken_by != call) return;
+  if (const EGLDisplay egl = eglGetCurrentDisplay(); egl != EGL_NO_DISPLAY)
+    eglMakeCurrent(egl, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  else if (Display* const glx = glXGetCurrentDisplay(); glx != nullptr)
+    glXMakeCurrent(glx, 0, nullptr);
+}
+
 bool session_lost() { return state().headset.faults.lose_session || state().headset.faults.end_instance; }
 
 namespace {
 
-constexpr std::array<const char*, 4> kExtensions{XR_KHR_OPENGL_ENABLE_EXTENSION_NAME, XR_MNDX_EGL_ENABLE_EXTENSION_NAME,
-                                                 XR_EXT_HAND_TRACKING_EXTENSION_NAME,
-                                                 XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME};
+std::vector<const char*> extensions() {
+  const MadeManners& manners = state().headset.manners;
+  std::vector<const char*> out{"XR_KHR_vulkan_enable2"};
+  if (!manners.lacks.gl) out.push_back(XR_KHR_OPENGL_ENABLE_EXTENSION_NAME);
+  if (!manners.lacks.egl) out.push_back(XR_MNDX_EGL_ENABLE_EXTENSION_NAME);
+  if (!manners.lacks.hands) out.push_back(XR_EXT_HAND_TRACKING_EXTENSION_NAME);
+  if (manners.hand_source) out.push_back("XR_EXT_hand_tracking_data_source");
+  if (!manners.lacks.time) out.push_back(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
+  return out;
+}
 constexpr std::array<float, 4> kFov{-0.78f, 0.70f, 0.74f, -0.83f};  // left, right, up, down; the other eye mirrored
 
 std::array<float, 4> fov_of(int eye) {
@@ -69,20 +88,25 @@ XrResult wrong() {
 
 XrResult XRAPI_CALL enumerate_extensions(const char*, std::uint32_t capacity, std::uint32_t* count,
                                          XrExtensionProperties* out) {
-  *count = static_cast<std::uint32_t>(kExtensions.size());
-  for (std::size_t i = 0; capacity != 0 && i < kExtensions.size(); ++i) {
-    std::strncpy(out[i].extensionName, kExtensions[i], XR_MAX_EXTENSION_NAME_SIZE - 1);
+  const auto names = extensions();
+  *count = static_cast<std::uint32_t>(names.size());
+  for (std::size_t i = 0; capacity != 0 && i < names.size(); ++i) {
+    std::strncpy(out[i].extensionName, names[i], XR_MAX_EXTENSION_NAME_SIZE - 1);
     out[i].extensionVersion = 1;
   }
   return XR_SUCCESS;
 }
 
-XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo*, XrInstance* out) {
+XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, XrInstance* out) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
+  if (std::getenv("DUBSAR_MADE_RUNTIME_ABORTS") != nullptr) std::abort();
+  if (s.headset.manners.lacks.newer_api && info->applicationInfo.apiVersion >= XR_MAKE_VERSION(1, 0, 1))
+    return XR_ERROR_API_VERSION_UNSUPPORTED;
   if (s.headset.alive.instances != 0) return XR_ERROR_LIMIT_REACHED;
   if (s.headset.faults.end_instance) return XR_ERROR_RUNTIME_UNAVAILABLE;
   ++s.headset.alive.instances;
+  ++s.headset.instances_ever;
   s.instance = s.next_handle++;
   *out = handle_of<XrInstance>(s.instance);
   return XR_SUCCESS;
@@ -101,9 +125,9 @@ XrResult XRAPI_CALL poll_event(XrInstance, XrEventDataBuffer* out) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
   if (s.headset.faults.end_instance) return XR_ERROR_INSTANCE_LOST;
-  if (s.headset.faults.lose_session && s.session != 0 && !s.loss_told) {
-    s.loss_told = true;
-    s.news.push_back(XR_SESSION_STATE_LOSS_PENDING);
+  if (s.headset.faults.lose_session && s.session != 0 && !s.events.loss_told) {
+    s.events.loss_told = true;
+    s.events.news.push_back(XR_SESSION_STATE_LOSS_PENDING);
   }
   if (s.headset.faults.recentre) {
     s.headset.faults.recentre = false;
@@ -112,15 +136,21 @@ XrResult XRAPI_CALL poll_event(XrInstance, XrEventDataBuffer* out) {
     change.type = XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING;
     change.session = handle_of<XrSession>(s.session);
     change.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
+    s.events.recentred_at = s.frame.number + 1 + s.headset.manners.recentre_lead;
+    change.changeTime = (s.events.recentred_at + 2) * period_ns(s.headset);
+    leave_traces("xrPollEvent");
     return XR_SUCCESS;
   }
-  if (s.news.empty()) return XR_EVENT_UNAVAILABLE;
+  for (const XrState next : s.headset.faults.states) s.events.news.push_back(static_cast<XrSessionState>(next));
+  s.headset.faults.states.clear();
+  leave_traces("xrPollEvent");
+  if (s.events.news.empty()) return XR_EVENT_UNAVAILABLE;
   auto& change = *reinterpret_cast<XrEventDataSessionStateChanged*>(out);
   change = {};
   change.type = XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED;
   change.session = handle_of<XrSession>(s.session);
-  change.state = s.news.front();
-  s.news.pop_front();
+  change.state = s.events.told = s.events.news.front();
+  s.events.news.pop_front();
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL get_system(XrInstance, const XrSystemGetInfo* info, XrSystemId* out) {
@@ -140,14 +170,17 @@ XrResult XRAPI_CALL view_sizes(XrInstance, XrSystemId, XrViewConfigurationType, 
                                std::uint32_t* count, XrViewConfigurationView* out) {
   XrViewConfigurationView view{};
   view.type = XR_TYPE_VIEW_CONFIGURATION_VIEW;
-  view.recommendedImageRectWidth = view.recommendedImageRectHeight = kMadeEyePx;
+  view.recommendedImageRectWidth = view.recommendedImageRectHeight =
+      static_cast<std::uint32_t>(state().headset.manners.eye_px);
   view.maxImageRectWidth = view.maxImageRectHeight = 4096;
   view.recommendedSwapchainSampleCount = view.maxSwapchainSampleCount = 1;
-  return fill(std::vector<XrViewConfigurationView>(2, view), capacity, count, out);
+  return fill(std::vector(static_cast<std::size_t>(state().headset.manners.views), view), capacity, count, out);
 }
 XrResult XRAPI_CALL blend_modes(XrInstance, XrSystemId, XrViewConfigurationType, std::uint32_t capacity,
                                 std::uint32_t* count, XrEnvironmentBlendMode* out) {
-  return fill(std::vector{XR_ENVIRONMENT_BLEND_MODE_OPAQUE}, capacity, count, out);
+  std::vector<XrEnvironmentBlendMode> modes;
+  for (const int mode : state().headset.manners.blends) modes.push_back(static_cast<XrEnvironmentBlendMode>(mode));
+  return fill(modes, capacity, count, out);
 }
 XrResult XRAPI_CALL gl_requirements(XrInstance, XrSystemId, XrGraphicsRequirementsOpenGLKHR* out) {
   out->minApiVersionSupported = XR_MAKE_VERSION(4, 3, 0);
@@ -161,7 +194,7 @@ XrResult XRAPI_CALL create_session(XrInstance, const XrSessionCreateInfo* info, 
   if (s.session != 0) return XR_ERROR_LIMIT_REACHED;
   if (session_lost()) return XR_ERROR_RUNTIME_FAILURE;
   const auto* const binding = static_cast<const XrBaseInStructure*>(info->next);
-  if (binding == nullptr) return XR_ERROR_GRAPHICS_DEVICE_INVALID;
+  if (binding == nullptr || s.headset.manners.lacks.gl_session) return XR_ERROR_GRAPHICS_DEVICE_INVALID;
   if (binding->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX) {
     const auto& egl = *reinterpret_cast<const XrGraphicsBindingEGLMNDX*>(binding);
     if (egl.context == nullptr || egl.display == nullptr || egl.getProcAddress == nullptr)
@@ -176,11 +209,12 @@ XrResult XRAPI_CALL create_session(XrInstance, const XrSessionCreateInfo* info, 
     return XR_ERROR_GRAPHICS_DEVICE_INVALID;
   }
   s.session = s.next_handle++;
-  s.running = s.frame.waited = s.frame.begun = s.loss_told = false;
+  s.running = s.frame.waited = s.frame.begun = s.events.loss_told = false;
   ++s.headset.alive.sessions;
   ++s.headset.sessions_ever;
-  s.news = {XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY};
+  s.events.news = {XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY};
   *out = handle_of<XrSession>(s.session);
+  leave_traces("xrCreateSession");
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL destroy_session(XrSession) {
@@ -189,7 +223,7 @@ XrResult XRAPI_CALL destroy_session(XrSession) {
   --s.headset.alive.sessions;
   s.session = 0;
   s.running = false;
-  s.news.clear();
+  s.events.news.clear();
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL begin_session(XrSession, const XrSessionBeginInfo*) {
@@ -198,7 +232,8 @@ XrResult XRAPI_CALL begin_session(XrSession, const XrSessionBeginInfo*) {
   if (s.running) return wrong();
   s.running = true;
   for (const auto next : {XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED})
-    s.news.push_back(next);
+    s.events.news.push_back(next);
+  leave_traces("xrBeginSession");
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL end_session(XrSession) {
@@ -231,6 +266,7 @@ XrResult XRAPI_CALL locate_space(XrSpace space, XrSpace base, XrTime time, XrSpa
   out->pose = posef(in_space(place_of(s.spaces[id_of(space)], t), s.spaces[id_of(base)], t));
   out->locationFlags = XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT |
                        XR_SPACE_LOCATION_POSITION_TRACKED_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
+  leave_traces("xrLocateSpace");
   return XR_SUCCESS;
 }
 
@@ -243,8 +279,9 @@ XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* 
   ++s.frame.number;  // time goes on by frames: a slow renderer sees the same world as a quick one
   out->predictedDisplayTime = (s.frame.number + 2) * period_ns(s.headset);
   out->predictedDisplayPeriod = period_ns(s.headset);
-  out->shouldRender = XR_TRUE;
+  out->shouldRender = s.headset.manners.hidden ? XR_FALSE : XR_TRUE;
   s.headset.now_s = 1e-9 * static_cast<double>(out->predictedDisplayTime);
+  leave_traces("xrWaitFrame");
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL begin_frame(XrSession, const XrFrameBeginInfo*) {
@@ -253,14 +290,15 @@ XrResult XRAPI_CALL begin_frame(XrSession, const XrFrameBeginInfo*) {
   if (!s.frame.waited || s.frame.begun) return wrong();
   s.frame.waited = false;
   s.frame.begun = true;
+  leave_traces("xrBeginFrame");
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* view_state,
                                  std::uint32_t capacity, std::uint32_t* count, XrView* out) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
-  *count = 2;
-  if (capacity < 2) return capacity == 0 ? XR_SUCCESS : XR_ERROR_SIZE_INSUFFICIENT;
+  *count = static_cast<std::uint32_t>(s.headset.manners.views);
+  if (capacity < *count) return capacity == 0 ? XR_SUCCESS : XR_ERROR_SIZE_INSUFFICIENT;
   const double t = 1e-9 * static_cast<double>(info->displayTime);
   const MadePose head = made_head(s.headset, t);
   for (int eye = 0; eye < 2; ++eye) {
@@ -272,6 +310,7 @@ XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrView
   }
   view_state->viewStateFlags = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT |
                                XR_VIEW_STATE_POSITION_TRACKED_BIT | XR_VIEW_STATE_ORIENTATION_TRACKED_BIT;
+  leave_traces("xrLocateViews");
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL convert_time(XrInstance, XrTime time, timespec* out) {
@@ -282,6 +321,16 @@ XrResult XRAPI_CALL convert_time(XrInstance, XrTime time, timespec* out) {
   const std::int64_t at =
       now.tv_sec * 1'000'000'000LL + now.tv_nsec + time - (s.frame.number + 1) * period_ns(s.headset);
   *out = {at / 1'000'000'000, at % 1'000'000'000};
+  return XR_SUCCESS;
+}
+
+// Core functions, mandatory: layers of other people call them.
+XrResult XRAPI_CALL type_text(XrInstance, XrStructureType value, char out[XR_MAX_STRUCTURE_NAME_SIZE]) {
+  std::snprintf(out, XR_MAX_STRUCTURE_NAME_SIZE, "XR_TYPE_%d", static_cast<int>(value));
+  return XR_SUCCESS;
+}
+XrResult XRAPI_CALL result_text(XrInstance, XrResult value, char out[XR_MAX_RESULT_STRING_SIZE]) {
+  std::snprintf(out, XR_MAX_RESULT_STRING_SIZE, "XrResult_%d", static_cast<int>(value));
   return XR_SUCCESS;
 }
 
@@ -302,6 +351,8 @@ XrResult XRAPI_CALL get_proc(XrInstance, const char* name, PFN_xrVoidFunction* o
       {"xrEnumerateInstanceExtensionProperties", plain(&enumerate_extensions)},
       {"xrCreateInstance", plain(&create_instance)},
       {"xrDestroyInstance", plain(&destroy_instance)},
+      {"xrStructureTypeToString", plain(&type_text)},
+      {"xrResultToString", plain(&result_text)},
       {"xrGetInstanceProperties", plain(&instance_properties)},
       {"xrPollEvent", plain(&poll_event)},
       {"xrGetSystem", plain(&get_system)},

@@ -18,9 +18,9 @@ XrResult wrong() {
 }
 
 XrResult XRAPI_CALL swapchain_formats(XrSession, std::uint32_t capacity, std::uint32_t* count, std::int64_t* out) {
-  constexpr std::array<std::int64_t, 3> kFormats{GL_RGBA16F, GL_SRGB8_ALPHA8, GL_RGBA8};
-  *count = kFormats.size();
-  if (capacity >= kFormats.size()) std::copy(kFormats.begin(), kFormats.end(), out);
+  const std::vector<std::int64_t>& formats = state().headset.manners.formats;
+  *count = static_cast<std::uint32_t>(formats.size());
+  if (capacity >= formats.size()) std::copy(formats.begin(), formats.end(), out);
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* info, XrSwapchain* out) {
@@ -36,6 +36,7 @@ XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* inf
   s.swapchains[s.next_handle] = chain;
   ++s.headset.alive.swapchains;
   *out = handle_of<XrSwapchain>(s.next_handle++);
+  leave_traces("xrCreateSwapchain");
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL destroy_swapchain(XrSwapchain swapchain) {
@@ -59,8 +60,10 @@ XrResult XRAPI_CALL acquire_image(XrSwapchain swapchain, const XrSwapchainImageA
   if (session_lost()) return XR_ERROR_SESSION_LOST;
   MadeSwapchain& chain = s.swapchains[id_of(swapchain)];
   if (chain.acquired || !s.frame.begun) return wrong();
+  if (s.headset.manners.refuses_gl_errors && glGetError() != GL_NO_ERROR) return XR_ERROR_RUNTIME_FAILURE;
   chain.acquired = true;
   *index = static_cast<std::uint32_t>(chain.next);
+  leave_traces("xrAcquireSwapchainImage");
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL wait_image(XrSwapchain swapchain, const XrSwapchainImageWaitInfo*) {
@@ -68,6 +71,11 @@ XrResult XRAPI_CALL wait_image(XrSwapchain swapchain, const XrSwapchainImageWait
   const std::lock_guard lock(s.headset.mutex);
   MadeSwapchain& chain = s.swapchains[id_of(swapchain)];
   if (!chain.acquired || chain.waited) return wrong();
+  leave_traces("xrWaitSwapchainImage");
+  if (s.headset.manners.busy_waits > 0) {
+    --s.headset.manners.busy_waits;
+    return XR_TIMEOUT_EXPIRED;
+  }
   chain.waited = true;
   return XR_SUCCESS;
 }
@@ -79,6 +87,7 @@ XrResult XRAPI_CALL release_image(XrSwapchain swapchain, const XrSwapchainImageR
   chain.acquired = chain.waited = false;
   chain.shown = chain.next;
   chain.next = (chain.next + 1) % static_cast<int>(chain.textures.size());
+  leave_traces("xrReleaseSwapchainImage");
   return XR_SUCCESS;
 }
 
@@ -101,6 +110,25 @@ void look_at(const MadeSwapchain& chain, std::vector<std::uint8_t>& red, std::op
   bright = count == 0 ? std::nullopt : std::optional(sum / static_cast<double>(count));
 }
 
+/// As a compositor that shares the context may leave it.
+void spoil_gl_state() {
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glUseProgram(0);
+  glBindVertexArray(0);
+  glActiveTexture(GL_TEXTURE5);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, 1, 1);
+  glViewport(0, 0, 1, 1);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glDepthMask(GL_FALSE);
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_BLEND);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT_AND_BACK);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 7);
+}
+
 XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
@@ -111,9 +139,11 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
   frame.predicted = (s.frame.number + 2) * period_ns(s.headset);
   frame.displayed = info->displayTime;
   frame.layers = static_cast<int>(info->layerCount);
+  frame.blend = static_cast<int>(info->environmentBlendMode);
   if (info->layerCount == 1) {
     const auto& layer = *reinterpret_cast<const XrCompositionLayerProjection*>(info->layers[0]);
     if (layer.type != XR_TYPE_COMPOSITION_LAYER_PROJECTION || layer.viewCount != 2) return wrong();
+    frame.layer_flags = layer.layerFlags;
     for (std::size_t eye = 0; eye < 2; ++eye) {
       const XrCompositionLayerProjectionView& view = layer.views[eye];
       const XrPosef& p = view.pose;
@@ -129,6 +159,8 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
     }
   }
   s.headset.frames.push_back(frame);
+  if (s.headset.manners.spoils_gl_state) spoil_gl_state();
+  leave_traces("xrEndFrame");
   return XR_SUCCESS;
 }
 

@@ -8,10 +8,22 @@
 namespace dubsar::testing {
 namespace {
 
+// XR_EXT_hand_tracking_data_source, newer than Debian's headers: values of Khronos' registry.
+constexpr auto kSourceInfo = static_cast<XrStructureType>(1000428000);
+constexpr auto kSourceState = static_cast<XrStructureType>(1000428001);
+constexpr std::int32_t kSeenHand = 1, kControllersHand = 2;
+struct HandSource {
+  XrStructureType type;
+  void* next;
+  XrBool32 active;
+  std::int32_t source;
+};
+
 XrResult XRAPI_CALL create_tracker(XrSession, const XrHandTrackerCreateInfoEXT* info, XrHandTrackerEXT* out) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
   s.trackers[s.next_handle] = info->hand == XR_HAND_LEFT_EXT ? 0 : 1;
+  s.only_seen_hands = info->next != nullptr && static_cast<const XrBaseInStructure*>(info->next)->type == kSourceInfo;
   ++s.headset.alive.hand_trackers;
   *out = handle_of<XrHandTrackerEXT>(s.next_handle++);
   return XR_SUCCESS;
@@ -59,14 +71,21 @@ XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLo
   const std::lock_guard lock(s.headset.mutex);
   const MadeHeadset& h = s.headset;
   if (session_lost()) return XR_ERROR_SESSION_LOST;
-  const bool there = s.trackers[id_of(tracker)] == 1 && h.hands.right_hand;
+  const bool of_controller = h.manners.hands_from_controllers && h.hands.controller;
+  const bool there = s.trackers[id_of(tracker)] == 1 && (h.hands.right_hand || (of_controller && !s.only_seen_hands));
   out->isActive = there ? XR_TRUE : XR_FALSE;
+  if (auto* const source = static_cast<HandSource*>(out->next); source != nullptr && source->type == kSourceState) {
+    if (!h.manners.hand_source) ++state().headset.wrong_calls;
+    source->active = out->isActive;
+    source->source = of_controller ? kControllersHand : kSeenHand;
+  }
   if (!there) return XR_SUCCESS;
   const double t = 1e-9 * static_cast<double>(info->time);
-  const bool holds = t >= h.hands.hold_from && t < h.hands.hold_to;
+  const bool holds = of_controller || (t >= h.hands.hold_from && t < h.hands.hold_to);
   const double moving = std::clamp(t - h.hands.hold_from, 0.0, h.hands.hold_to - h.hands.hold_from);
-  const glm::dvec3 palm = h.hands.hand_from + h.hands.hand_speed * moving;
-  const auto places = made_hand(holds && !h.hands.fist, holds && h.hands.fist);
+  const glm::dvec3 palm = of_controller ? h.hands.grip.position : h.hands.hand_from + h.hands.hand_speed * moving;
+  const bool fist = h.hands.fist || of_controller;
+  const auto places = made_hand(holds && !fist, holds && fist);
   for (std::uint32_t i = 0; i < out->jointCount && i < places.size(); ++i) {
     out->jointLocations[i].pose =
         posef(in_space({palm + places[i], {1, 0, 0, 0}}, s.spaces[id_of(info->baseSpace)], t));
@@ -133,7 +152,10 @@ XrResult XRAPI_CALL create_action_space(XrSession, const XrActionSpaceCreateInfo
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL sync(XrSession, const XrActionsSyncInfo*) {
-  return session_lost() ? XR_ERROR_SESSION_LOST : XR_SUCCESS;
+  const std::lock_guard lock(state().headset.mutex);
+  leave_traces("xrSyncActions");
+  if (session_lost()) return XR_ERROR_SESSION_LOST;
+  return state().events.told == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
 }
 /// There is a right controller, or none.
 bool held(const XrActionStateGetInfo* info) {

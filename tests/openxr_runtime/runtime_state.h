@@ -44,21 +44,33 @@ struct FrameState {
   std::int64_t number = 0;  // of the one that was waited for
 };
 
+/// What the application is told of its session.
+struct SessionNews {
+  std::deque<XrSessionState> news;
+  XrSessionState told = XR_SESSION_STATE_UNKNOWN;  // the newest that it took
+  std::int64_t recentred_at = 0;                   // the frame of the new middle
+  bool loss_told = false;
+};
+
 /// One instance, one session, as runtimes have it.
 struct RuntimeState {
   MadeHeadset headset;
-  std::deque<XrSessionState> news;
+  SessionNews events;
   std::map<std::uint64_t, MadeSpace> spaces;
   std::map<std::uint64_t, MadeSwapchain> swapchains;
   std::map<std::uint64_t, MadeAction> actions;
   std::map<std::uint64_t, int> trackers;  // side
   std::map<std::string, XrPath> paths;
   std::uint64_t next_handle = 1, session = 0, instance = 0;
-  bool running = false, recentred = false, loss_told = false;
+  bool only_seen_hands = false;  // what the hand trackers were made for
+  bool running = false;
   FrameState frame;
 };
 
 RuntimeState& state();
+
+/// What the runtime's manners leave behind after a call; call it last.
+void leave_traces(const char* call);
 
 /// From one picture of the headset to the next; call under its mutex.
 inline std::int64_t period_ns(const MadeHeadset& headset) {

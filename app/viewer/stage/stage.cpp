@@ -178,6 +178,7 @@ Result<void> Stage::set_mesh(const TriMesh& mesh) {
 
 std::optional<WearerFrame> Stage::wearer() const { return parts_->sink->wearer(); }
 std::string Stage::display_note() const { return parts_->sink->note(); }
+bool Stage::display_ended() const { return parts_->sink->ended(); }
 void Stage::recentre() { parts_->sink->recentre(); }
 
 Result<void> Stage::swap_eyes() {
@@ -253,6 +254,15 @@ bool Stage::needs_paint() const noexcept {
   return p.layers.overlay_changed || p.moved() || p.cost.refined || (p.may_refine() && !p.cost.worked);
 }
 
+/// Of a headset most of its period: what is late is shown twice, and the head has gone on meanwhile.
+double Stage::Parts::budget_ms() const {
+  constexpr double kOfPeriod = 0.75;  // the rest is the compositor's and the copy's
+  const auto wearer = sink->wearer();
+  return wearer && wearer->period > 0
+             ? std::min(options.budget_ms, kOfPeriod * 1e-6 * static_cast<double>(wearer->period))
+             : options.budget_ms;
+}
+
 void Stage::Parts::took(double ms, std::size_t count) {
   const double each = ms / static_cast<double>(std::max<std::size_t>(count, 1));
   cost.exact_view_ms = cost.exact_view_ms == 0.0 ? each : (1.0 - kForget) * cost.exact_view_ms + kForget * each;
@@ -263,6 +273,7 @@ Result<void> Stage::Parts::paint_moved() {
   const std::span<const View> wanted = sink->views(cameras());
   painted.views.assign(wanted.begin(), wanted.end());
   painted.of = {next.shown, next.viewer};
+  if (sink->hidden()) return {};  // nobody sees it: the layers stay as they are
   painted.moved_at = next.now;
   cost.coarse = 0;
   cost.begun_ms = 0.0;
@@ -273,7 +284,7 @@ Result<void> Stage::Parts::paint_moved() {
   if (!object.multi) return object.renderer->render(scene(), painted.views, options.samples, array);
   // What is not known to be quick, and what another size may replace at once, is coarse first.
   if (!object.mesh->has_exact() || cost.exact_view_ms == 0.0 || next.now - cost.prepared_at < kRestNs ||
-      cost.exact_view_ms * static_cast<double>(painted.views.size()) > options.budget_ms) {
+      cost.exact_view_ms * static_cast<double>(painted.views.size()) > budget_ms()) {
     cost.coarse = static_cast<int>(painted.views.size());
     return object.multi->draw_moving(scene(), painted.views, array);
   }
@@ -307,6 +318,7 @@ Result<bool> Stage::work() {
 
 Result<void> Stage::paint(const Surface& target, Field field) {
   Parts& p = *parts_;
+  if (p.sink->outdated()) DUBSAR_TRY(p.prepare(*p.sink));
   if (p.moved()) {
     DUBSAR_TRY(p.paint_moved());
   } else if (p.may_refine() && !p.cost.worked) {

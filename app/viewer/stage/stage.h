@@ -169,6 +169,7 @@ class Stage {
   /// Of worn displays: who wears it, as of the last paint(), in the screen frame; and why nobody does.
   std::optional<WearerFrame> wearer() const;
   std::string display_note() const;
+  bool display_ended() const;  ///< who wears the display chose to end
   /// Drawn over the views from the next paint() on; call it again when it looks different. Null: nothing. It outlives
   /// the stage or is taken away.
   void set_overlay(LayerPainter* painter);

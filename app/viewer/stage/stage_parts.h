@@ -105,11 +105,17 @@ struct Stage::Parts {
   glm::dmat4 placed(const Shown& shown, int half) const;
   glm::dmat4 placed() const { return placed(next.shown, 1); }
   bool moved() const noexcept;
+  double budget_ms() const;  // for the exact views of a picture
+  Background background() const {
+    Background out = options.shading.background;
+    out.transparent = out.transparent || sink->traits().see_through;
+    return out;
+  }
   SceneView scene() const {
     return {painted.items,
             painted.light,
             painted.clips,
-            options.shading.background,
+            background(),
             painted.fog,
             painted.glow,
             painted.judge ? &*painted.judge : nullptr};

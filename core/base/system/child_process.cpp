@@ -77,6 +77,10 @@ bool ChildProcess::read(std::array<std::string, 2>& came) {
   return open;
 }
 
+void ChildProcess::kill() {
+  if (id_ > 0) ::kill(id_, SIGKILL);
+}
+
 int ChildProcess::wait() {
   int status = 0;
   while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {

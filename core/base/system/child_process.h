@@ -23,6 +23,8 @@ class ChildProcess {
 
   /// Adds what it says within .2 s to `came`, first standard output, then standard error; false when both have ended.
   bool read(std::array<std::string, 2>& came);
+  /// Ends it at once, whatever it does (SIGKILL); for other people's code that hangs.
+  void kill();
   /// Its exit code; 128 + signal when a signal ended it.
   int wait();
 

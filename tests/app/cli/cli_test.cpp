@@ -244,5 +244,21 @@ TEST(CommandLine, DoctorFindsEverythingThatTheProgramNeeds) {
   EXPECT_GE(json::parse(run.out)["findings"].size(), 4u);
 }
 
+#ifdef DUBSAR_MADE_RUNTIME_JSON
+TEST(CommandLine, DoctorOutlivesAHeadsetsRuntimeThatCrashes) {
+  ::setenv("XR_RUNTIME_JSON", DUBSAR_MADE_RUNTIME_JSON, 1);
+  for (const bool crashes : {false, true}) {
+    if (crashes) ::setenv("DUBSAR_MADE_RUNTIME_ABORTS", "1", 1);
+    const ProgramRun run = run_dubsar({"doctor"});
+    EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+    EXPECT_NE(run.out.find(crashes ? "the runtime crashes when it is asked (signal 6)" : "headset Made Headset"),
+              std::string::npos)
+        << run.out;
+  }
+  ::unsetenv("DUBSAR_MADE_RUNTIME_ABORTS");
+  ::unsetenv("XR_RUNTIME_JSON");
+}
+#endif
+
 }  // namespace
 }  // namespace dubsar::test

@@ -93,8 +93,8 @@ TEST_F(WornSession, HelpStandsInTheRoomBehindTheObjectForBothEyesAndGoesAgain) {
   const auto frame = [&](double part) -> const testing::MadeFrame& {
     return frames[static_cast<std::size_t>(part * static_cast<double>(frames.size()))];
   };
-  // The object's middle is half a metre before the eyes and 35 cm under them. The page, 800 x 600 mm, stands 25 cm
-  // behind it, its lower edge as high as its middle.
+  // The object's middle is half a metre before the eyes and 25 degrees under them, 23 cm. The page, 800 x 600 mm,
+  // stands 25 cm behind it, its lower edge as high as its middle.
   for (const std::size_t eye : {0u, 1u}) {
     const auto& fov = frame(0.5).fov[eye];
     const auto pixel = [&](double along_m, float low, float high) {
@@ -104,8 +104,8 @@ TEST_F(WornSession, HelpStandsInTheRoomBehindTheObjectForBothEyesAndGoesAgain) {
     const Changed page = changed(frame(0.2).red[eye], frame(0.5).red[eye]);
     EXPECT_NEAR(page.left, pixel(-0.4 + aside, fov[0], fov[1]), 4.0) << eye;
     EXPECT_NEAR(page.right, pixel(0.4 + aside, fov[0], fov[1]), 4.0) << eye;
-    EXPECT_NEAR(page.top, pixel(0.6 - 0.35, fov[3], fov[2]), 4.0) << eye;
-    EXPECT_GE(page.bottom, pixel(-0.35, fov[3], fov[2]) - 1.0) << eye;
+    EXPECT_NEAR(page.top, pixel(0.6 - 0.2332, fov[3], fov[2]), 4.0) << eye;
+    EXPECT_GE(page.bottom, pixel(-0.2332, fov[3], fov[2]) - 1.0) << eye;
     EXPECT_LT(page.bottom, pixel(-0.05, fov[3], fov[2])) << eye << ": the page has text";
     EXPECT_EQ(frame(0.9).red[eye], frame(0.2).red[eye]) << eye << ": nothing of it is left";
   }

@@ -71,10 +71,7 @@ Light mean_light(
 class KeepingHeadset final : public Headset {
  public:
   explicit KeepingHeadset(std::array<Image, 2>& worn) : worn_(&worn) {}
-  std::string runtime() const override { return "none"; }
-  std::string device() const override { return "kept"; }
   PixelSize eye_size() const override { return {40, 30}; }
-  bool has_hands() const override { return false; }
   std::optional<WearerFrame> begin() override { return WearerFrame(); }
   Result<void> end(const ViewArray& views) override {
     for (int eye = 0; eye < 2; ++eye) (*worn_)[static_cast<std::size_t>(eye)] = views.read_layer(eye).value();

@@ -112,7 +112,8 @@ TEST(RenderDisplay, QuiltViewsSweepFromTheLeftmostCameraToTheRight) {
 
 TEST(RenderDisplay, EverySinkThatDrawsShowsTheObject) {
   for (const SinkBackend& backend : output_sinks()) {
-    if (backend.name == "null" || backend.name == "shutter" || backend.name == "image" || backend.name == "lenticular")
+    if (backend.name == "null" || backend.name == "shutter" || backend.name == "image" ||
+        backend.name == "lenticular" || backend.name == "openxr")
       continue;
     const bool quilt = backend.name == "quilt";
     const std::string spec = std::string(backend.name) + (quilt ? ":columns=3,rows=2,width=300,height=200" : "");
