@@ -1,7 +1,14 @@
 # Compile rules shared by all rooms, and the two functions that declare a room and its tests.
 
 add_library(dubsar_options INTERFACE)
-target_include_directories(dubsar_options INTERFACE ${PROJECT_SOURCE_DIR})
+# Rooms of app see the rooms below app from one folder, and of app their own folders and those of the rooms in their DEPS.
+set(DUBSAR_WALLS ${PROJECT_BINARY_DIR}/walls)
+target_include_directories(dubsar_options INTERFACE
+  $<IF:$<BOOL:$<TARGET_PROPERTY:DUBSAR_WALLED>>,${DUBSAR_WALLS}/house,${PROJECT_SOURCE_DIR}>)
+foreach(room core devices input display)
+  file(MAKE_DIRECTORY ${DUBSAR_WALLS}/house)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${room} ${DUBSAR_WALLS}/house/${room} SYMBOLIC)
+endforeach()
 target_compile_options(dubsar_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align
   -Woverloaded-virtual -Wconversion -Wno-sign-conversion -Wno-psabi -Werror=return-type
@@ -76,10 +83,26 @@ function(dubsar_unity target)
   endforeach()
 endfunction()
 
-# dubsar_library(name [COLD] SOURCES a.cpp ... [DEPS public targets] [PRIVATE_DEPS third-party targets])
+# dubsar_walled(target): it can include what lies in the folders of its sources, and what lies in those of the rooms that it
+# links: each has an include folder of its own.
+function(dubsar_walled target)
+  file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  set(wall ${DUBSAR_WALLS}/${target})
+  file(MAKE_DIRECTORY ${wall}/${room})
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    if(source MATCHES "^([a-z_]+)/")
+      file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${CMAKE_MATCH_1} ${wall}/${room}/${CMAKE_MATCH_1} SYMBOLIC)
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES DUBSAR_WALLED ON)
+  target_include_directories(${target} PUBLIC ${wall})
+endfunction()
+
+# dubsar_library(name [COLD] [WALLED] SOURCES a.cpp ... [DEPS public targets] [PRIVATE_DEPS third-party targets])
 # One static library per room. Only what stands in DEPS can be included: the link line is the wall.
 function(dubsar_library name)
-  cmake_parse_arguments(ARG "COLD" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "COLD;WALLED" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   if(NOT ARG_SOURCES)  # a room that is laid out but empty
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE dubsar_options ${ARG_DEPS})
@@ -89,6 +112,9 @@ function(dubsar_library name)
   target_link_libraries(${name} PUBLIC dubsar_options ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
   if(ARG_COLD)
     dubsar_cold(${name})
+  endif()
+  if(ARG_WALLED)
+    dubsar_walled(${name})
   endif()
   if(DUBSAR_UNITY AND NOT name IN_LIST DUBSAR_LOOSE)
     dubsar_unity(${name})

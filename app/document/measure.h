@@ -36,6 +36,12 @@ struct MeasureFigures {
   friend bool operator==(const MeasureFigures&, const MeasureFigures&) = default;
 };
 
+/// mm2 of the surface that the scan shows, and of that which was inferred.
+struct EvidenceShares {
+  double measured_mm2 = 0.0, inferred_mm2 = 0.0;
+  friend bool operator==(const EvidenceShares&, const EvidenceShares&) = default;
+};
+
 struct Measure {
   MeasureKind kind = MeasureKind::kDistance;
   std::string name;                   ///< "wedge head"; may be empty

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "app/viewer/stage/object_places.h"
+#include "app/stage/object_places.h"
 #include "display/render/scene.h"
 #include "input/people/hand_marks.h"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "app/document/document.h"
-#include "app/panels/right_to_left.h"
+#include "app/stage/right_to_left.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {

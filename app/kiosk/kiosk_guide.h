@@ -14,7 +14,8 @@
 #include "app/kiosk/service_notify.h"
 #include "app/kiosk/signs.h"
 #include "app/kiosk/tour_walk.h"
-#include "app/viewer/session_guide.h"
+#include "app/kiosk/visit.h"
+#include "app/tools/session_guide.h"
 
 namespace dubsar::app {
 

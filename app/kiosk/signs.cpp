@@ -11,36 +11,13 @@ constexpr TimestampNs kFills = 2'000'000'000;   // a hand that ends there by cha
 constexpr TimestampNs kForgives = 300'000'000;  // a tremble over the edge, or a hand that is lost for a moment
 constexpr TimestampNs kSignGone = 1'000'000'000;
 constexpr double kEdge = 1.25;  // of the radius, for a hand that is on the sign already
-constexpr double kMargin = 0.035;
-double radius_on(double aspect) { return std::min(0.095, 0.14 * aspect); }
 
 /// Above, below or on one of the signs, whether or not one is shown there now.
 bool in_their_column(const glm::dvec2& at, double aspect) {
-  return at.x > 0.5 - (kEdge * 2.0 * radius_on(aspect) + kMargin) / aspect;
+  return at.x > 0.5 - (kEdge * 2.0 * sign_radius(aspect) + kSignMargin) / aspect;
 }
 
 }  // namespace
-
-std::vector<SignPicture> place_signs(std::span<const Sign> signs, double aspect) {
-  std::vector<SignPicture> out;
-  const double radius = radius_on(aspect), margin = kMargin;
-  const double x = 0.5 - (radius + margin) / aspect;
-  // What takes a sign's place when it was chosen stands elsewhere: a hand that stays where it is chooses nothing more.
-  constexpr std::array<int, kSignCount> kRow{0, 1, 2, 0, 2};
-  for (const Sign sign : signs) {
-    const int row = kRow[static_cast<std::size_t>(sign)];
-    out.push_back({sign, {x, 0.5 - (radius + margin) - row * (2.0 * radius + margin)}, radius, 0.0});
-  }
-  return out;
-}
-
-std::vector<SignPicture> signs_on(std::span<const SignPicture> signs, double aspect) {
-  std::vector<Sign> kinds;
-  for (const SignPicture& sign : signs) kinds.push_back(sign.sign);
-  std::vector<SignPicture> out = place_signs(kinds, aspect);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i].filled = signs[i].filled;
-  return out;
-}
 
 std::optional<Sign> sign_at(const glm::dvec2& at, std::span<const SignPicture> signs, double aspect) {
   for (const SignPicture& sign : signs) {

@@ -6,15 +6,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "app/document/gallery_picture.h"
 #include "app/kiosk/words.h"
 #include "core/base/system/clock.h"
 #include "input/people/hand_marks.h"
 
 namespace dubsar::app {
-
-/// Things a visitor may learn, in the order in which they are taught.
-enum class Lesson : std::uint8_t { kShowHand, kGrab, kTurn, kRest, kTwoHands, kSwipe };
-inline constexpr std::size_t kLessonCount = 6;
 
 /// What is known at one moment.
 struct VisitMoment {

@@ -10,7 +10,6 @@
 #include "app/commands/key_table.h"
 #include "app/panels/open_dialogue.h"
 #include "app/panels/slice_panel.h"
-#include "app/viewer/surface_tools.h"
 
 namespace dubsar::app {
 

@@ -7,7 +7,7 @@
 
 #include "app/panels/lesson_picture.h"
 #include "app/panels/panel_font.h"
-#include "app/panels/right_to_left.h"
+#include "app/stage/right_to_left.h"
 
 namespace dubsar::app {
 namespace {
@@ -118,11 +118,6 @@ void draw_sign(const SignPicture& sign, float width, float height) {
 }
 
 }  // namespace
-
-double letter_height_mm(double reading_distance_m) noexcept {
-  constexpr double kArcMinutes = 20.0;
-  return 1e3 * reading_distance_m * kArcMinutes / 60.0 * std::numbers::pi / 180.0;
-}
 
 double letters_size(double letter_mm, double height, double per_mm) noexcept {
   return std::min(letter_mm * per_mm / panel_capital(), kLargestLetters * height);

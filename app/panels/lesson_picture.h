@@ -1,7 +1,7 @@
 #pragma once
 // A hand that shows a gesture, drawn with lines and circles: no words, no file.
 
-#include "app/kiosk/visit.h"
+#include "app/document/gallery_picture.h"
 
 namespace dubsar::app {
 

@@ -7,8 +7,7 @@
 #include <numbers>
 
 #include "app/panels/panel_kit.h"
-#include "core/base/numbers/angle.h"
-#include "display/render/shading.h"
+#include "app/stage/light_over.h"
 
 namespace dubsar::app {
 namespace {
@@ -17,19 +16,6 @@ constexpr float kRadius = 46.0f;
 constexpr int kRings = 10, kRound = 32;
 
 }  // namespace
-
-LightPlace light_over(double x, double y) noexcept {
-  const double azimuth = std::fmod(std::atan2(x, y) / kRadPerDeg + 360.0, 360.0);
-  return {azimuth,
-          std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRadPerDeg, kLowestLightDeg, kHighestLightDeg)};
-}
-
-glm::dvec3 place_over(const LightPlace& light) {
-  Light same;
-  same.azimuth_deg = light.azimuth_deg;
-  same.elevation_deg = light.elevation_deg;
-  return light_direction(same);
-}
 
 void draw_light_ball(const LightPlace& light, float right, float bottom) {
   const float side = 2.0f * kRadius + 12.0f;

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "app/panels/light_ball.h"
 #include "app/panels/panel_kit.h"
+#include "app/stage/light_over.h"
 #include "display/render/shading.h"
 
 namespace dubsar::app {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "app/panels/panel_kit.h"
-#include "app/viewer/stage/marks.h"
+#include "app/stage/marks.h"
 
 namespace dubsar::app {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "app/panels/help_columns.h"
 #include "app/panels/panel_font.h"
-#include "app/panels/right_to_left.h"
+#include "app/stage/right_to_left.h"
 #include "display/render/context/gl_objects.h"
 #include "display/render/view_array.h"
 

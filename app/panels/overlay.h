@@ -16,7 +16,7 @@
 #include "app/panels/help_page.h"
 #include "app/panels/legend_page.h"
 #include "app/panels/light_ball.h"
-#include "app/viewer/stage/stage.h"
+#include "app/stage/stage.h"
 
 struct ImGuiContext;
 

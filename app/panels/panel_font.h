@@ -16,7 +16,7 @@ double panel_capital() noexcept;
 /// of Akkadian and Sumerian, and digits above and below the line.
 const std::uint16_t* panel_letters();
 
-/// The same and those of Hebrew and Arabic, joined ones too (app/panels/right_to_left.h).
+/// The same and those of Hebrew and Arabic, joined ones too (app/stage/right_to_left.h).
 const std::uint16_t* panel_letters_of_all();
 
 /// Pixels of the layout: the large font, sharp when it is halved; lines of the help and its like, and their usual

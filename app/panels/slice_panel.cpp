@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels/ground_color.h"
 #include "app/panels/panel_kit.h"
+#include "app/stage/ground_color.h"
 
 namespace dubsar::app {
 namespace {
 
-constexpr float kLeastWidth = 280.0f, kShare = 0.44f, kBetween = 4.0f, kHead = 58.0f, kFoot = 22.0f;
+constexpr float kBetween = 4.0f, kHead = 58.0f, kFoot = 22.0f;
 constexpr ImU32 kSurface = IM_COL32(0xe8, 0xb4, 0x4c, 0xff), kPatch = IM_COL32(0x56, 0xb4, 0xff, 0xff),
                 kNothing = IM_COL32(kGroundColor[0], kGroundColor[1], kGroundColor[2], 0xff),
                 kCross = IM_COL32(0xe8, 0xe4, 0xdc, 0x70);
@@ -139,8 +139,6 @@ void draw_head(const Board& desk) {
 }
 
 }  // namespace
-
-float slices_width(float width) noexcept { return std::max(kLeastWidth, kShare * width); }
 
 std::array<PanelRect, kSlices> slice_rects(float width, float height, int large) noexcept {
   const float panel = slices_width(width);

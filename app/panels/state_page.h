@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "app/document/source_row.h"
 #include "app/panels/help_page.h"
-#include "app/viewer/steering/source_set.h"
 #include "display/sinks/output_sink.h"
 #include "input/people/presence.h"
 

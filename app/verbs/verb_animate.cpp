@@ -16,7 +16,7 @@
 #include "app/publish/video.h"
 #include "app/verbs/display_picture.h"
 #include "app/verbs/told_session.h"
-#include "app/viewer/stage/film_painter.h"
+#include "app/viewer/film_painter.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/system/log.h"
 #include "core/base/text/parse_number.h"

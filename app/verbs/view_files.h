@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/cli/input_options.h"
-#include "app/viewer/shelf.h"
+#include "app/session/shelf.h"
 
 namespace dubsar::app {
 

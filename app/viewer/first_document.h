@@ -1,6 +1,7 @@
 #pragma once
-// The document that a session begins with, and how what it says becomes looks of the mesh.
+// The document that a session begins with.
 
+#include "app/stage/shown_document.h"
 #include "app/viewer/view_options.h"
 #include "core/mesh/tri_mesh.h"
 
@@ -20,16 +21,5 @@ std::string first_words(const SessionWork& work);
 
 /// Of all vertices that triangles use and whose places are numbers, mm of the scan; min > max where there are none.
 Box surface_box(const TriMesh& mesh);
-
-/// The turn from the scan to the unturned view of it.
-glm::dmat3 first_turn(const Box& model, const ViewDirection& direction);
-
-/// The parts of the document as they are looked at and where they stand: as far apart as it says, each half of the way,
-/// pores with the body that they lie in. `model` is the box of the mesh in mm.
-PartLooks laid_out(const Document& document, PartLooks looks, const Box& model);
-
-/// What the stage shows for this view of the document: style, parts, and how far the envelope is lifted. `model` is the
-/// box of the mesh in mm.
-Shown shown_of(const Document& document, const ViewState& view, const StageOptions& stage, const Box& model);
 
 }  // namespace dubsar::app

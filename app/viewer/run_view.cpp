@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "app/viewer/presenter/window_presenter.h"
-#include "app/viewer/stage/side_panels.h"
+#include "app/viewer/side_panels.h"
 #include "core/base/system/large_blocks.h"
 #include "core/base/system/log.h"
 #include "core/image_io/png_file.h"

@@ -15,7 +15,7 @@ struct ViewMoment {
   Presenter& presenter;
 };
 
-class SidePanels;  // app/viewer/stage/side_panels.h
+class SidePanels;  // app/viewer/side_panels.h
 
 /// Windows that go on from one session to the next, with the last picture on them until there is another one.
 struct KeptPanels {

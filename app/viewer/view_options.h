@@ -10,26 +10,16 @@
 #include "app/commands/command_table.h"
 #include "app/commands/step_script.h"
 #include "app/document/document.h"
-#include "app/viewer/stage/stage.h"
-#include "app/viewer/steering/source_set.h"
+#include "app/session/session_work.h"
+#include "app/stage/stage.h"
+#include "app/steering/source_set.h"
 #include "core/base/numbers/measurements.h"
-#include "core/volume/formats/import_options.h"
 #include "display/render/context/context_glfw.h"
 #include "input/navigation/mapping.h"
 
 namespace dubsar::app {
 
-class SessionGuide;  // app/viewer/session_guide.h
-
-/// What a session begins with, besides the surface.
-struct SessionWork {
-  Document document{};              ///< its view and home are the stage's, and its parts the mesh's where it has none
-  bool upright = false;             ///< the obverse stands upright at home, as its writing says
-  std::string doubt{};              ///< what is not sure of how it stands; empty: nothing
-  bool restored = false;            ///< the document is that of an earlier session
-  std::filesystem::path surface{};  ///< the file of the surface; beside it its scan is looked for
-  std::optional<ImportOptions> scan{};  ///< the scan it was made of; none: looked for
-};
+class SessionGuide;  // app/tools/session_guide.h
 
 struct SessionTime {
   /// Simulated time: this many steps a second, however long they take; the same script gives the same pictures on every

@@ -4,11 +4,11 @@
 
 #include "app/commands/sides.h"
 #include "app/panels/panel_font.h"
+#include "app/stage/marks.h"
+#include "app/steering/worn_input.h"
 #include "app/viewer/first_document.h"
 #include "app/viewer/presenter/window_input.h"
 #include "app/viewer/presenter/window_place.h"
-#include "app/viewer/stage/marks.h"
-#include "app/viewer/steering/worn_input.h"
 #include "core/base/system/log.h"
 #include "core/base/system/second.h"
 

@@ -1,6 +1,6 @@
 // The box of cuts in a session: its handles follow the pointer.
 
-#include "app/viewer/cut_box.h"
+#include "app/tools/cut_box.h"
 #include "app/viewer/viewer.h"
 
 namespace dubsar::app {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "app/panels/light_ball.h"
+#include "app/stage/light_over.h"
+#include "app/stage/marks.h"
 #include "app/viewer/first_document.h"
-#include "app/viewer/stage/marks.h"
 #include "app/viewer/viewer.h"
 #include "core/base/system/log.h"
 

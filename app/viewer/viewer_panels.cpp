@@ -5,8 +5,8 @@
 
 #include "app/commands/sides.h"
 #include "app/panels/state_page.h"
+#include "app/stage/marks.h"
 #include "app/viewer/first_document.h"
-#include "app/viewer/stage/marks.h"
 #include "app/viewer/viewer.h"
 #include "core/base/system/second.h"
 

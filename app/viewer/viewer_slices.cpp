@@ -2,6 +2,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "app/panels/slice_panel.h"
 #include "app/viewer/first_document.h"
 #include "app/viewer/viewer.h"
 #include "core/base/numbers/inch.h"
@@ -28,10 +29,11 @@ void Viewer::lay_slices(Shown& shown) {
   const glm::dvec2 layout = this->layout();
   const ScanView& view = document().scan;
   const glm::dvec2 px = glm::dvec2(traits.view.width, traits.view.height) / layout;
-  tools_.slices->update(view, layout, px);
+  const auto rects = slice_rects(static_cast<float>(layout.x), static_cast<float>(layout.y), view.large);
+  tools_.slices->update(view, rects, px);
   if (given_.options.time.fps > 0) {  // the same script gives the same pictures
     tools_.slices->wait();
-    tools_.slices->update(view, layout, px);
+    tools_.slices->update(view, rects, px);
   }
   const double left =
       layout.x - static_cast<double>(slices_width(static_cast<float>(layout.x)) + kTabWidth + kToolsWidth);

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 
+#include "app/stage/sight.h"
 #include "app/viewer/first_document.h"
-#include "app/viewer/stage/sight.h"
 #include "app/viewer/viewer.h"
 #include "core/base/numbers/inch.h"
 #include "core/image_io/png_file.h"

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "app/viewer/surface_tools.h"
+#include "app/tools/surface_tools.h"
 #include "core/phantom/phantom.h"
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/pipeline.h"

@@ -9,7 +9,7 @@
 
 #include "app/kiosk/kiosk_guide.h"
 #include "app/viewer/run_view.h"
-#include "app/viewer/stage/side_panels.h"
+#include "app/viewer/side_panels.h"
 #include "core/image_io/png_file.h"
 #include "tests/app/kiosk/flashes.h"
 #include "tests/display/spec.h"

@@ -1,6 +1,6 @@
 // Letters as they are seen, against the forms that Unicode's charts give them.
 
-#include "app/panels/right_to_left.h"
+#include "app/stage/right_to_left.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/viewer/surface_tools.h"
+#include "app/tools/surface_tools.h"
 
 namespace dubsar::app {
 namespace {

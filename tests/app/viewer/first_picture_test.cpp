@@ -6,7 +6,7 @@
 #include <cmath>
 #include <thread>
 
-#include "app/viewer/stage/stage.h"
+#include "app/stage/stage.h"
 #include "core/base/system/clock.h"
 #include "display/render/context/context_egl.h"
 #include "display/render/passes/compose_pass.h"

@@ -1,6 +1,6 @@
 // Labels beside their places: none covers another, and none jumps while things turn.
 
-#include "app/viewer/stage/label_layout.h"
+#include "app/stage/label_layout.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

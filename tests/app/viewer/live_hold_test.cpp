@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "app/viewer/stage/sight.h"
+#include "app/stage/sight.h"
 #include "tests/app/viewer/live_fixture.h"
 
 namespace dubsar::app {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/viewer/stage/side_panels.h"
+#include "app/viewer/side_panels.h"
 #include "tests/app/viewer/live_fixture.h"
 
 namespace dubsar::app {

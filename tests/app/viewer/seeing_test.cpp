@@ -8,9 +8,9 @@
 #include <map>
 #include <random>
 
-#include "app/panels/light_ball.h"
+#include "app/stage/light_over.h"
+#include "app/stage/picker.h"
 #include "app/viewer/run_view.h"
-#include "app/viewer/steering/picker.h"
 #include "display/render/shading.h"
 #include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"

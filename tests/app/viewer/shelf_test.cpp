@@ -1,6 +1,6 @@
 // The files of a session without a window: what is read when.
 
-#include "app/viewer/shelf.h"
+#include "app/session/shelf.h"
 
 #include <gtest/gtest.h>
 

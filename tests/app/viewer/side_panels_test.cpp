@@ -1,6 +1,6 @@
 // Several panels of one session, without windows.
 
-#include "app/viewer/stage/side_panels.h"
+#include "app/viewer/side_panels.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

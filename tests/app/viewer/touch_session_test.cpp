@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "app/stage/sight.h"
 #include "app/viewer/run_view.h"
-#include "app/viewer/stage/sight.h"
 #include "app/viewer/viewer.h"
 #include "devices/touch/simulated_touch.h"
 #include "input/input_recording.h"

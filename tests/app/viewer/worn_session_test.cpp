@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/steering/worn_input.h"
 #include "app/viewer/run_view.h"
-#include "app/viewer/steering/worn_input.h"
 #include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"
 #include "tests/openxr_runtime/worn_test.h"

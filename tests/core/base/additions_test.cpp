@@ -76,7 +76,7 @@ TEST(Additions, AFrameOfALeapGoesThroughAtMostTwelveFilesEachOfWhichHandsItToThe
   ASSERT_GE(files.size(), 2U) << "docs/leap.md has no list of the way of a frame";
   EXPECT_LE(files.size(), 12U);
   EXPECT_EQ(files.front(), "devices/transport/usb_transport.cpp");
-  EXPECT_EQ(files.back(), "app/viewer/stage/stage.cpp");
+  EXPECT_EQ(files.back(), "app/stage/stage.cpp");
   for (std::size_t i = 0; i + 1 < files.size(); ++i)
     for (const std::string& side : {files[i], files[i + 1]})
       EXPECT_TRUE(std::regex_search(text_of(side), std::regex("\\b" + calls[i] + "\\b")))

@@ -88,6 +88,67 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// The rooms of the app: targets of app/CMakeLists.txt, the folders of their sources, and all that they link there.
+struct AppRoom {
+  std::set<std::string> folders, links;
+};
+
+std::map<std::string, AppRoom> app_rooms() {
+  const std::string text = text_of(fs::path(DUBSAR_SOURCE_DIR) / "app/CMakeLists.txt");
+  const std::regex room(R"(dubsar_library\((\w+)[^\n]* WALLED\s([^)]*)\))"), folder(R"(\s([a-z_]+)/)"),
+      link(R"(\bdubsar_\w+)");
+  const auto words = [](const std::string& where, const std::regex& what, std::size_t group) {
+    std::set<std::string> out;
+    for (std::sregex_iterator it(where.begin(), where.end(), what), end; it != end; ++it) out.insert((*it)[group]);
+    return out;
+  };
+  std::map<std::string, AppRoom> out;
+  for (std::sregex_iterator it(text.begin(), text.end(), room), end; it != end; ++it)
+    out[(*it)[1]] = {words((*it)[2], folder, 1), words((*it)[2], link, 0)};
+  for (std::size_t round = 0; round < out.size(); ++round)
+    for (auto& [name, of] : out)
+      for (const std::string& below : std::set<std::string>(of.links))
+        if (const auto at = out.find(below); at != out.end())
+          of.links.insert(at->second.links.begin(), at->second.links.end());
+  return out;
+}
+
+// The compiler says so, too (dubsar_walled); this says it of a build without the app, and which way the arrows go.
+TEST(Layering, RoomsOfTheAppIncludeOnlyWhatTheyLink) {
+  const std::map<std::string, AppRoom> rooms = app_rooms();
+  ASSERT_GE(rooms.size(), 14u);
+  const std::map<std::string, std::set<std::string>> never{
+      {"dubsar_document", {"dubsar_session", "dubsar_commands", "dubsar_stage"}},
+      {"dubsar_commands", {"dubsar_session", "dubsar_stage", "dubsar_tools", "dubsar_drawers"}},
+      {"dubsar_stage", {"dubsar_commands", "dubsar_session", "dubsar_steering", "dubsar_tools", "dubsar_drawers"}},
+      {"dubsar_steering", {"dubsar_commands", "dubsar_session", "dubsar_stage", "dubsar_tools", "dubsar_drawers"}},
+      {"dubsar_tools", {"dubsar_session", "dubsar_drawers", "dubsar_kiosk", "dubsar_gallery", "dubsar_viewer"}},
+      {"dubsar_drawers",
+       {"dubsar_session", "dubsar_steering", "dubsar_tools", "dubsar_kiosk", "dubsar_gallery", "dubsar_viewer"}},
+      {"dubsar_gallery", {"dubsar_drawers", "dubsar_session", "dubsar_viewer"}},
+      {"dubsar_viewer", {"dubsar_kiosk", "dubsar_gallery"}}};
+  for (const auto& [room, others] : never)
+    for (const std::string& other : others)
+      EXPECT_FALSE(rooms.at(room).links.contains(other)) << room << " links " << other;
+  // Who may be seen from a folder: itself, and what the targets with sources in it link.
+  std::map<std::string, std::set<std::string>> seen;
+  for (const auto& [name, room] : rooms)
+    for (const std::string& folder : room.folders) {
+      seen[folder].insert(folder);
+      for (const std::string& link : room.links)
+        if (const auto at = rooms.find(link); at != rooms.end())
+          seen[folder].insert(at->second.folders.begin(), at->second.folders.end());
+    }
+  for (const char* of_the_program : {"cli", "monitor", "publish"}) seen.erase(of_the_program);
+  const std::regex folder("^app/([a-z_]+)/.*");
+  for (const auto& [file, target] : all_includes()) {
+    std::smatch from, to;
+    if (!std::regex_match(file, from, folder) || !std::regex_match(target, to, folder)) continue;
+    const auto walls = seen.find(from[1]);
+    EXPECT_TRUE(walls == seen.end() || walls->second.contains(to[1])) << file << " includes " << target;
+  }
+}
+
 // docs/architecture.md, "a sink": its pair, one row of the table, its case in the test of directions, its row in the
 // docs.
 TEST(Layering, ASinkIsItsPairARowOfTheTableItsTestAndItsRowInTheDocs) {
