@@ -20,6 +20,7 @@
 #include "devices/touch/touch_sample.h"
 #include "devices/transport/hotplug_bell.h"
 #include "input/hand_frame.h"
+#include "input/hand_grip.h"
 #include "input/input_event.h"
 #include "input/navigation/view_state.h"
 
@@ -53,6 +54,7 @@ struct InputFrame {
   std::optional<PuckMotion> puck;
   std::vector<HandFrame> hands;  ///< screen frame, everybody's, at most kMaxHands
   std::vector<HeadFrame> heads;  ///< everybody's
+  HandGrips grips{};             ///< of who wears a headset; while one is active, `hands` are only shown
   /// Fingers on a touch panel, whose events the window makes that knows where it is (gestures/touch_pointer.h). They
   /// are not recorded, those events are.
   std::vector<TouchFrame> touches;

@@ -51,6 +51,8 @@ const InputFrame& InputMixer::poll(TimestampNs now) {
     }
     if (entry.freshness == Freshness::kLost) continue;
     merged_.time = std::max(merged_.time, entry.frame.time);
+    for (std::size_t side = 0; side < 2; ++side)
+      if (!merged_.grips[side].active) merged_.grips[side] = entry.frame.grips[side];
     if (entry.frame.puck && !merged_.puck) merged_.puck = entry.frame.puck;
   }
   std::stable_sort(merged_.events.begin(), merged_.events.end(),

@@ -11,6 +11,7 @@ struct CameraPose {
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
   double zoom = 1.0;
   glm::dvec2 pan{0.0, 0.0};
+  double nearer = 0.0;  ///< window heights; where a wearer's hand left the object: of this session only
   friend bool operator==(const CameraPose&, const CameraPose&) = default;
 };
 

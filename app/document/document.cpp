@@ -6,7 +6,7 @@ namespace dubsar::app {
 namespace {
 
 ViewState view_from(const CameraPose& camera, const LightPlace& light) {
-  return {camera.rotation, camera.zoom, camera.pan, light.azimuth_deg, light.elevation_deg};
+  return {camera.rotation, camera.zoom, camera.pan, light.azimuth_deg, light.elevation_deg, camera.nearer};
 }
 
 }  // namespace
@@ -15,7 +15,7 @@ ViewState view_of(const Document& document) { return view_from(document.now, doc
 ViewState home_of(const Document& document) { return view_from(document.home, document.home_light); }
 
 void set_view(Document& document, const ViewState& view) {
-  document.now = {view.rotation, view.zoom, view.pan};
+  document.now = {view.rotation, view.zoom, view.pan, view.nearer};
   document.light = {view.light_azimuth_deg, view.light_elevation_deg};
 }
 

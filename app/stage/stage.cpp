@@ -42,7 +42,8 @@ ShownRect shown_mm(const View& view) {
 
 glm::dmat4 screen_from_model(const Box& box, const ViewDirection& direction, const ViewState& view,
                              double magnification, double window_height_mm, const glm::dvec2& middle_mm) {
-  const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), glm::dvec3(middle_mm + view.pan * window_height_mm, 0.0));
+  const glm::dmat4 moved = glm::translate(
+      glm::dmat4(1.0), glm::dvec3(middle_mm + view.pan * window_height_mm, view.nearer * window_height_mm));
   const glm::dmat4 zoomed = glm::scale(glm::dmat4(1.0), glm::dvec3(view.zoom));
   return moved * zoomed * glm::mat4_cast(view.rotation) * place_object(box, direction, {0, 0, 0}, magnification);
 }

@@ -91,7 +91,8 @@ struct Shown {
   friend bool operator==(const Shown& a, const Shown& b) {
     return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks && a.before == b.before &&
            a.glow == b.glow && a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom &&
-           a.view.pan == b.view.pan && a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
+           a.view.pan == b.view.pan && a.view.nearer == b.view.nearer &&
+           a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
            a.other == b.other && a.parts == b.parts && a.lens_zoom == b.lens_zoom && !a.beside == !b.beside &&
            (!a.beside || *a.beside == *b.beside);

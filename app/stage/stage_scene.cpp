@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/stage/stage_parts.h"
+#include "app/stage/worn_room.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
@@ -69,6 +70,9 @@ void Stage::Parts::set_scene(const Shown& shown, int half) {
   other.style = ready(other.style);
   painted.items = {MeshItem{&*object.mesh, world, ready(shown.style), shown.parts, other}};
   for (const LinesItem& lines : shown.before) painted.items.emplace_back(lines);
+  if (const auto wearer = sink->wearer())
+    for (LinesItem& lines : worn_room(*wearer, 0.5 * glm::length(object.box.size()), sink->traits().see_through))
+      painted.items.emplace_back(std::move(lines));
   const auto cut = [&](const glm::dvec3& p) {
     return std::any_of(painted.clips.begin(), painted.clips.end(),
                        [&](const ClipPlane& clip) { return glm::dot(clip.normal, p - clip.point_mm) < 0.0; });

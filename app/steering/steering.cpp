@@ -122,6 +122,11 @@ void Steering::set_home(const ViewState& home) {
   navigator_.set_home(home);
 }
 
+void Steering::set_room(const WornRoom& room) {
+  const std::scoped_lock lock(mutex_);
+  navigator_.set_room(room);
+}
+
 void Steering::let_go_of_mouse() {
   const std::scoped_lock lock(mutex_);
   navigator_.let_go_of_mouse();

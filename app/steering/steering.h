@@ -69,6 +69,7 @@ class Steering {
   void set_home(const ViewState& home);
   /// What whoever leads the session knows of it.
   void set_scene(const GestureScene& scene);
+  void set_room(const WornRoom& room);
   void let_go_of_mouse();
   /// Where the eyes go when nobody is seen.
   void set_rest(const glm::dvec3& rest_m);

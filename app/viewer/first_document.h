@@ -17,7 +17,7 @@ FirstDocument first_document(const ViewOptions& options, const TriMesh& mesh);
 
 /// What is said over a surface that was opened: what is there again, else how it is turned where its way up is not
 /// sure, else how one begins.
-std::string first_words(const SessionWork& work);
+std::string first_words(const SessionWork& work, bool worn);
 
 /// Of all vertices that triangles use and whose places are numbers, mm of the scan; min > max where there are none.
 Box surface_box(const TriMesh& mesh);

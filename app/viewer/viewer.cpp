@@ -92,7 +92,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
     log_warning("{}", note);
     say(note);
   } else if (has_surface()) {
-    say(first_words(given_.options.work));
+    say(first_words(given_.options.work, stage_->traits().worn));
   }
   if (has_surface()) show_document();
   if (given_.options.time.fps == 0) steering_->run(given_.clock);
@@ -137,7 +137,14 @@ Result<void> Viewer::place_changed() {
   if (!given_.presenter.visible()) return {};
   DUBSAR_TRY(stage_->set_screen(given_.presenter.screen(given_.options.stage.screen)));
   steering_->set_rest(stage_->rest_m());
+  tell_room();
   return given_.presenter.fit(stage_->traits());
+}
+
+/// How large things are for a wearer's hands.
+void Viewer::tell_room() {
+  if (!stage_->traits().worn) return;
+  steering_->set_room({1e-3 * stage_->window_mm().y, 0.5e-3 * glm::length(stage_->box_mm().size())});
 }
 
 /// What the headset said of its wearer goes to the source of hands.

@@ -243,6 +243,7 @@ class Viewer final : public Workplace {
   PanelState panel_state(TimestampNs now);
   void add_thumbnails(PanelState& panels);
   void keep_up();
+  void tell_room();
   void feed_worn();
   void follow();
   void update_overlay(TimestampNs now, const RecentFigures& figures);

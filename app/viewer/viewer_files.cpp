@@ -238,6 +238,7 @@ void Viewer::find_tools() {
 Result<void> Viewer::put(OpenedSurface surface) {
   auto next = std::make_unique<OpenedSurface>(std::move(surface));
   DUBSAR_TRY(stage_->set_mesh(next->mesh));
+  tell_room();
   ViewOptions& options = given_.options;
   const bool first = !has_surface();
   files_.untold.clear();
@@ -294,7 +295,7 @@ void Viewer::begin_file(Document found) {
 }
 
 void Viewer::say_what_was_found() {
-  std::string words = first_words(given_.options.work);
+  std::string words = first_words(given_.options.work, stage_->traits().worn);
   Document all;
   for (const OtherWork& other : editor_->others()) all = add_marks(all, other.work.document);
   if (const std::string more = marks_more(document(), add_marks(document(), all)); !more.empty())

@@ -250,6 +250,35 @@ void Navigator::follow_hands() {
   momentum_.ask_turn({0.0, 0.0, pull.roll_rad});
 }
 
+/// Of who wears a headset: the object is in the hand.
+void Navigator::use_grips(TimestampNs now, const HandGrips& grips) {
+  const double height = room_.window_height_m;
+  HeldObject object{height * glm::dvec3(view_.pan, view_.nearer), view_.rotation, view_.zoom, room_.radius_m};
+  if (grip_.follow(grips, object, mapping_.zoom_min, mapping_.zoom_max)) {
+    if (!claim(Control::kHands, now)) return grip_.let_go();
+    ++movement_;
+    glide_.stop();
+    momentum_.drop();
+  }
+  if (!grip_.holds()) return;
+  view_.rotation = object.rotation;
+  view_.zoom = object.scale;
+  view_.pan = glm::dvec2(object.centre_m) / height;
+  view_.nearer = object.centre_m.z / height;
+  light_by_other_hand(grips, object);
+}
+
+/// An open hand beside the one that holds is a lamp.
+void Navigator::light_by_other_hand(const HandGrips& grips, const HeldObject& object) {
+  constexpr double kNearM = 0.05, kFarM = 0.4;
+  const HandGrip& other = grips[grip_.holds(0) ? 1 : 0];
+  const glm::dvec3 way = other.pose.position_m - object.centre_m;
+  const double length = glm::length(way);
+  if ((grip_.holds(0) && grip_.holds(1)) || !other.active || other.closed || length < kNearM || length > kFarM) return;
+  view_.light_azimuth_deg = std::fmod(std::atan2(way.x, way.y) / kRadPerDeg + 360.0, 360.0);
+  view_.light_elevation_deg = std::clamp(std::asin(way.z / length) / kRadPerDeg, kLightLow, kLightHigh);
+}
+
 void Navigator::use_hands(TimestampNs now, const SteeringHands& kept, const SteeringStanding& standing, double dt_s) {
   for (std::size_t h = 0; h < hands_.size(); ++h) hands_[h].update(now, kept[h], standing[h]);
   use_gestures(now);
@@ -263,10 +292,12 @@ void Navigator::update(TimestampNs now, const InputFrame& frame, const SteeringH
   const double dt_s = last_update_ < 0 ? 0.0 : std::max(0.0, seconds(now - last_update_));
   last_update_ = now;
   selected_m_.reset();
-  claims_.advance(now, hold_.mode() != HandMode::kNone || mouse_.dragging || mouse_.pinching);
+  claims_.advance(now, hold_.mode() != HandMode::kNone || grip_.holds() || mouse_.dragging || mouse_.pinching);
   use_events(now, frame);
   use_puck(now, frame.puck, std::min(dt_s, 0.1));
-  use_hands(now, hands, standing, dt_s);
+  use_grips(now, frame.grips);
+  const bool worn = frame.grips[0].active || frame.grips[1].active;
+  use_hands(now, worn ? SteeringHands{} : hands, standing, dt_s);
   glide_.advance(now, view_);
   view_.zoom = std::clamp(view_.zoom, mapping_.zoom_min, mapping_.zoom_max);
 }

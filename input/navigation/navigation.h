@@ -9,6 +9,7 @@
 #include "input/hand_standing.h"
 #include "input/input_source.h"
 #include "input/navigation/control_claims.h"
+#include "input/navigation/grip_hold.h"
 #include "input/navigation/hand_hold.h"
 #include "input/navigation/held_place.h"
 #include "input/navigation/mapping.h"
@@ -31,6 +32,12 @@ struct MouseDrag {
 /// The hands of the person who steers (input/people/person_keeper.h), null where one is not seen.
 using SteeringHands = std::array<const HandFrame*, 2>;
 using SteeringStanding = std::array<HandStanding, 2>;
+
+/// What a hand of a headset's wearer needs to know to take hold of the object; metres.
+struct WornRoom {
+  double window_height_m = 0.3;  ///< what pan and nearer count in
+  double radius_m = 0.05;        ///< of the object's sphere at zoom 1
+};
 
 class Navigator {
  public:
@@ -62,6 +69,7 @@ class Navigator {
   void set_scene(const GestureScene& scene) {
     for (GestureRecognizer& hand : hands_) hand.set_scene(scene);
   }
+  void set_room(const WornRoom& room) { room_ = room; }
   /// Whoever held a mouse button or had fingers on the glass is gone without letting go.
   void let_go_of_mouse();
 
@@ -79,6 +87,8 @@ class Navigator {
   void zoom_about(const std::optional<glm::dvec2>& at, double factor);
   void use_puck(TimestampNs now, const std::optional<PuckMotion>& puck, double dt_s);
   void use_hands(TimestampNs now, const SteeringHands& hands, const SteeringStanding& standing, double dt_s);
+  void use_grips(TimestampNs now, const HandGrips& grips);
+  void light_by_other_hand(const HandGrips& grips, const HeldObject& object);
   void use_gestures(TimestampNs now);
   void begin_or_end_hold(TimestampNs now);
   void follow_hands();
@@ -93,6 +103,8 @@ class Navigator {
   MouseDrag mouse_;
   std::array<GestureRecognizer, 2> hands_;
   HandHold hold_;
+  GripHold grip_;
+  WornRoom room_;
   Momentum momentum_;
   std::optional<glm::dvec3> selected_m_;
 };

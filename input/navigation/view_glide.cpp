@@ -26,6 +26,7 @@ void ViewGlide::advance(TimestampNs now, ViewState& view) {
   view.rotation = glm::normalize(glm::slerp(a.rotation, b.rotation, s));
   view.zoom = a.zoom * std::pow(b.zoom / a.zoom, s);
   view.pan = glm::mix(a.pan, b.pan, s);
+  view.nearer = glm::mix(a.nearer, b.nearer, s);
   view.light_azimuth_deg = glm::mix(a.light_azimuth_deg, b.light_azimuth_deg, s);
   view.light_elevation_deg = glm::mix(a.light_elevation_deg, b.light_elevation_deg, s);
   if (t < 1.0) return;

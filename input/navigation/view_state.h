@@ -15,6 +15,7 @@ struct ViewState {
   glm::dvec2 pan{0.0, 0.0};                 ///< of the object's centre, in window heights
   double light_azimuth_deg = 315.0;         ///< clockwise from the upper side of the picture
   double light_elevation_deg = 25.0;        ///< above the picture plane
+  double nearer = 0.0;  ///< the object's centre towards the viewer, in window heights; worn displays
 };
 
 /// Angle between two turns, 0..180 degrees.

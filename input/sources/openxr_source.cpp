@@ -10,8 +10,9 @@ namespace {
 
 constexpr TimestampNs kSessionSilentNs = 500'000'000;
 constexpr double kSqueezed = 0.6, kLetGo = 0.4;          // of a trigger's way
-constexpr double kWholePush_m = 0.1;                     // for a deflection of 1
-constexpr double kWholeTwist = std::numbers::pi / 4;     // the same
+constexpr double kPinched_m = 0.025, kParted_m = 0.04;   // between the tips of thumb and index
+constexpr double kFist = 0.75, kOpened = 0.5;            // of the fingers' bend
+constexpr TimestampNs kBounceNs = 60'000'000;            // joints of one headset part for 20 to 60 ms in a pinch
 constexpr double kOpenBend = 30.0, kClosedBend = 180.0;  // degrees between palm and finger tip
 constexpr double kLongestStep_s = 0.1;                   // between samples that a velocity is made of
 
@@ -47,15 +48,15 @@ class OpenXrSource final : public InputSource {
     if (fresh) heard_ = now;
     if (!heard_ || now - *heard_ > kSessionSilentNs || !feed_->reason().empty()) {
       newest.hands.clear();
-      newest.puck.reset();
-      held_.reset();
+      newest.grips = {};
       return Freshness::kLost;
     }
     if (!fresh) return Freshness::kUnchanged;
     newest.time = simulated_time_ ? now : sample.time;
     newest.hands.clear();
     for (std::size_t side = 0; side < 2; ++side) add_hand(sample, side, newest);
-    steer(sample, newest);
+    grip(sample, newest);
+    press(sample, newest);
     last_ = sample;
     return Freshness::kNew;
   }
@@ -76,31 +77,35 @@ class OpenXrSource final : public InputSource {
     if (newest.hands.size() < kMaxHands) newest.hands.push_back(hand);
   }
 
-  /// The controller that is squeezed, as a puck.
-  void steer(const WornSample& sample, InputFrame& newest) {
-    if (held_) {
-      const auto& controller = sample.controllers[*held_];
-      if (!controller.active || controller.squeeze < kLetGo) held_.reset();
+  /// Where hands are and whether they are closed. A side that has a controller has no bare hand.
+  void grip(const WornSample& sample, InputFrame& newest) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const WornSample::Controller& controller = sample.controllers[side];
+      HandGrip& grip = newest.grips[side];
+      const bool was_closed = grip.closed && grip.active;
+      grip = {};
+      if (controller.active) {
+        grip = {true, controller.squeeze >= (was_closed ? kLetGo : kSqueezed), true, controller.grip};
+      } else if (const HandFrame* const hand = bare_hand(newest, side)) {
+        grip = {true, closed_hand(*hand, was_closed, side), false, hand->palm};
+      }
     }
-    for (std::size_t side = 0; side < 2 && !held_; ++side) {
-      const auto& controller = sample.controllers[side];
-      if (!controller.active || controller.squeeze < kSqueezed) continue;
-      held_ = side;
-      from_ = controller.grip;
-    }
-    const bool any = sample.controllers[0].active || sample.controllers[1].active;
-    newest.puck.reset();
-    if (any) newest.puck = PuckMotion{newest.time, glm::dvec3(0.0), glm::dvec3(0.0)};
-    if (held_) {
-      const Pose& grip = sample.controllers[*held_].grip;
-      glm::dquat turn = grip.rotation * glm::conjugate(from_.rotation);
-      if (turn.w < 0) turn = -turn;
-      const double angle = 2.0 * std::acos(std::min(1.0, turn.w));
-      const glm::dvec3 axis(turn.x, turn.y, turn.z);
-      const double length = glm::length(axis);
-      newest.puck->push = bounded((grip.position_m - from_.position_m) / kWholePush_m);
-      if (length > 1e-9) newest.puck->twist = bounded(angle / length / kWholeTwist * axis);
-    }
+  }
+  static const HandFrame* bare_hand(const InputFrame& frame, std::size_t side) {
+    for (const HandFrame& hand : frame.hands)
+      if (hand.valid && hand.chirality == (side == 0 ? Chirality::kLeft : Chirality::kRight)) return &hand;
+    return nullptr;
+  }
+  /// A pinch or a fist. Joints of cameras let fingers part for moments: a hand is open when it was for kBounceNs.
+  bool closed_hand(const HandFrame& hand, bool was_closed, std::size_t side) {
+    const bool closed = hand.pinch_distance_m < (was_closed ? kParted_m : kPinched_m) ||
+                        hand.grab_strength > (was_closed ? kOpened : kFist);
+    if (closed) closed_at_[side] = hand.time;
+    return closed || (was_closed && hand.time - closed_at_[side] < kBounceNs);
+  }
+
+  /// A trigger is the key of a puck: the next side.
+  void press(const WornSample& sample, InputFrame& newest) {
     for (std::size_t side = 0; side < 2; ++side) {
       const bool down = sample.controllers[side].active && sample.controllers[side].select;
       if (down == pressed_[side]) continue;
@@ -113,14 +118,11 @@ class OpenXrSource final : public InputSource {
       newest.events.push_back(event);
     }
   }
-  static glm::dvec3 bounded(const glm::dvec3& way) { return way / std::max(1.0, glm::length(way)); }
-
   std::shared_ptr<WornFeed> feed_;
   const bool simulated_time_;
   WornSample last_;
   std::optional<TimestampNs> heard_;
-  std::optional<std::size_t> held_;  // the controller that steers
-  Pose from_;                        // where it was squeezed
+  std::array<TimestampNs, 2> closed_at_{};  // when each hand was last seen closed
   std::array<bool, 2> pressed_{};
   std::array<std::uint32_t, 2> ids_{};
   std::uint32_t next_id_ = 0;

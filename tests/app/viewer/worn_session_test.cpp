@@ -33,13 +33,11 @@ class WornSession : public dubsar::testing::WornTest {
   SilentProgress progress_;
 };
 
-double degrees_about_up(const glm::dquat& turn) { return 2.0 * std::atan2(turn.y, turn.w) * 180.0 / std::numbers::pi; }
-
-TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
+TEST_F(WornSession, AFistWithinReachTakesTheTabletAlongAndTheHeadLooksAround) {
   made_->wearer.yaw_amplitude = 0.3;
   made_->hands.right_hand = made_->hands.fist = true;
-  made_->hands.hand_from = {-0.08, -0.25, -0.45};
-  made_->hands.hand_speed = {0.15, 0, 0};  // of the runtime's time, in which a step of the session takes 11 ms
+  made_->hands.hand_from = {-0.08, -0.2, -0.45};
+  made_->hands.hand_speed = {0.15, 0, 0.05};  // of the runtime's time, in which a step of the session takes 11 ms
   made_->hands.hold_from = now_s() + 0.5;
   made_->hands.hold_to = now_s() + 1.5;
   options_.time.longest_s = 7.0;
@@ -47,11 +45,10 @@ TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
   ASSERT_TRUE(done) << done.error().message;
   ASSERT_EQ(done->rows.size(), 1u);
   EXPECT_EQ(done->rows[0].health, SourceHealth::kPresent) << done->rows[0].reason;
-  // 15 cm to the right, half a degree a millimetre, and what it still turns when it is let go.
-  const double turned = degrees_about_up(done->view.rotation);
-  EXPECT_GT(turned, 60.0);
-  EXPECT_LT(turned, 110.0);
-  EXPECT_LT(std::abs(done->view.rotation.x) + std::abs(done->view.rotation.z), 0.12) << "about the vertical";
+  // 15 cm and 5 cm in the runtime's room, less what the hand goes before its fist is seen: window heights of 30 cm.
+  EXPECT_NEAR(std::hypot(done->view.pan.x, done->view.nearer), std::hypot(0.15, 0.05) / 0.3, 0.01);
+  EXPECT_NEAR(done->view.pan.y, 0.0, 1e-6);
+  EXPECT_LT(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 0.01) << "a hand that does not turn turns nothing";
   ASSERT_GT(made_->frames.size(), 150u);
   for (const auto& frame : made_->frames) {
     ASSERT_EQ(frame.layers, 1);
@@ -111,18 +108,43 @@ TEST_F(WornSession, HelpStandsInTheRoomBehindTheObjectForBothEyesAndGoesAgain) {
   }
 }
 
-TEST_F(WornSession, ASqueezedControllerIsAPuck) {
+TEST_F(WornSession, TheTabletFollowsASqueezedControllerAndStaysWhereItIsLetGo) {
   made_->hands.controller = true;
+  options_.time.longest_s = 4.0;
+  // The object's middle: half a metre ahead, 25 degrees down.
+  const glm::dvec3 centre(0, -0.2331538, -0.5), grip(0.05, -0.2, -0.45);
+  const glm::dquat turned = glm::angleAxis(1.3, glm::normalize(glm::dvec3(1, 2, -0.5)));
+  const glm::dvec3 moved(-0.12, 0.08, 0.2);
+  int step = 0;
+  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
+    const std::lock_guard lock(made_->mutex);
+    ++step;
+    const double part = std::clamp((step - 30) / 40.0, 0.0, 1.0);
+    made_->hands.grip.position = grip + part * moved;
+    made_->hands.grip.rotation = glm::slerp(glm::dquat(1, 0, 0, 0), turned, part);
+    made_->hands.squeeze = step > 20 && step < 90 ? 1.0 : 0.0;
+    if (step > 95) made_->hands.grip.position = {1, 1, 1};
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  const glm::dvec3 expected = grip + moved + turned * (centre - grip) - centre;
+  const glm::dvec3 is = 0.3 * glm::dvec3(done->view.pan, done->view.nearer);
+  EXPECT_LE(glm::distance(is, expected), 0.5e-3) << "metres";
+  EXPECT_LE(turn_between_deg(done->view.rotation, turned), 0.2);
+  EXPECT_EQ(done->view.zoom, 1.0);
+}
+
+TEST_F(WornSession, AControllerThatIsNotSqueezedMovesNothing) {
+  made_->hands.controller = made_->manners.hands_from_controllers = true;
   options_.time.longest_s = 3.0;
   int step = 0;
   const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
     const std::lock_guard lock(made_->mutex);
-    made_->hands.grip.position = {0.1, -0.3, -0.4};
-    made_->hands.squeeze = ++step > 20 && step < 70 ? 1.0 : 0.0;
-    made_->hands.grip.rotation = glm::angleAxis(step > 22 ? 0.5 : 0.0, glm::dvec3(0, 1, 0));
+    made_->hands.grip.position = {0.1 * std::sin(0.1 * ++step), -0.25, -0.48};
   });
   ASSERT_TRUE(done) << done.error().message;
-  EXPECT_GT(degrees_about_up(done->view.rotation), 15.0) << "twisted to the left seen from above";
+  EXPECT_EQ(done->view.pan, glm::dvec2(0.0));
+  EXPECT_EQ(done->view.nearer, 0.0);
+  EXPECT_LT(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 1e-9);
 }
 
 TEST_F(WornSession, TheSessionGoesOnWhenTheHeadsetIsLostAndComesBack) {

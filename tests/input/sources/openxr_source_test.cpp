@@ -99,30 +99,51 @@ TEST(OpenXrSource, HandsKeepTheirNumberWhileTheyAreSeenAndHaveAVelocity) {
   EXPECT_EQ(bench.source->poll(bench.now + 600'000'000, bench.frame), Freshness::kLost) << "silent for too long";
 }
 
-TEST(OpenXrSource, ASqueezedControllerIsAPuckUntilItIsLetGo) {
+TEST(OpenXrSource, ASqueezedControllerIsAClosedHandAndItsTriggerTheNextSide) {
   Bench bench;
   WornSample sample;
   sample.controllers[1] = {true, {{0.2, 0, 0.1}, {1, 0, 0, 0}}, 0.0, false};
   bench.after(sample);
-  ASSERT_TRUE(bench.frame.puck);
-  EXPECT_EQ(bench.frame.puck->push, glm::dvec3(0));
-  sample.controllers[1].squeeze = 1.0;
-  bench.after(sample);
-  sample.controllers[1].grip.position_m += glm::dvec3(0.05, 0, 0);
-  sample.controllers[1].grip.rotation = glm::angleAxis(3.14159265358979323846 / 8, glm::dvec3(0, 1, 0));
-  bench.after(sample);
-  EXPECT_NEAR(bench.frame.puck->push.x, 0.5, 1e-9);
-  EXPECT_NEAR(bench.frame.puck->twist.y, 0.5, 1e-9);
-  sample.controllers[1].grip.position_m.x += 5.0;
-  bench.after(sample);
-  EXPECT_NEAR(bench.frame.puck->push.x, 1.0, 1e-9) << "no more than all the way";
-  sample.controllers[1].squeeze = 0.3;
+  EXPECT_FALSE(bench.frame.puck);
+  EXPECT_FALSE(bench.frame.grips[0].active);
+  ASSERT_TRUE(bench.frame.grips[1].active);
+  EXPECT_TRUE(bench.frame.grips[1].controller);
+  EXPECT_EQ(bench.frame.grips[1].pose.position_m, glm::dvec3(0.2, 0, 0.1));
+  for (const auto& [squeeze, closed] : {std::pair{0.5, false}, {0.7, true}, {0.5, true}, {0.3, false}}) {
+    sample.controllers[1].squeeze = squeeze;
+    bench.after(sample);
+    EXPECT_EQ(bench.frame.grips[1].closed, closed) << squeeze;
+  }
   sample.controllers[1].select = true;
   bench.after(sample);
-  EXPECT_EQ(bench.frame.puck->push, glm::dvec3(0));
   ASSERT_EQ(bench.frame.events.size(), 1u);
   EXPECT_EQ(bench.frame.events[0].key, "puck1");
   EXPECT_TRUE(bench.frame.events[0].down);
+}
+
+/// Joints of one maker's headset let a pinch part for moments.
+TEST(OpenXrSource, APinchThatBouncesIsOne) {
+  for (const int parted_ms : {20, 40, 50}) {
+    Bench bench;
+    int opened = 0;
+    for (int ms = 0; ms < 1000; ms += 10) {
+      WornSample sample;
+      sample.hands[1] = hand_bent(0);
+      const bool bounce = ms % 200 >= 200 - parted_ms;
+      const double apart = bounce ? 0.06 : 0.01;
+      sample.hands[1]->joint(kThumbTip).pose.position_m =
+          sample.hands[1]->joint(kIndexTip).pose.position_m + glm::dvec3(0, -apart, 0);
+      bench.after(sample);
+      opened += !bench.frame.grips[1].closed;
+    }
+    EXPECT_EQ(opened, 0) << parted_ms;
+    for (int ms = 0; ms < 100; ms += 10) {
+      WornSample sample;
+      sample.hands[1] = hand_bent(0);
+      bench.after(sample);
+    }
+    EXPECT_FALSE(bench.frame.grips[1].closed) << "and it is let go";
+  }
 }
 
 TEST(OpenXrSource, NeedsAHeadsetAndTakesNoOptions) {
