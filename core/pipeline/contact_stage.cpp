@@ -11,7 +11,7 @@ constexpr double kUnevenClay = 2.0;
 
 }  // namespace
 
-Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const ImportedGrid& imported, StageRun run) {
+Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, ImportedGrid& imported, StageRun run) {
   TracedModel traced{std::move(model), {}};
   run.clock.start("contact", "point");
   ContactOptions options;
@@ -20,10 +20,10 @@ Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const ImportedGr
   options.halve_first = !imported.detail.resample();
   if (const auto& rays = imported.facts.rays; rays && rays->straightened)
     options.least_clay_step = static_cast<float>(kUnevenClay * rays->bent->after.clay * rays->bent->levels.contrast());
-  HalfResolutionSource halved(*imported.scan);
+  HalfResolutionSource halved(imported.unbent());
   SlabSource& density = imported.straightened        ? static_cast<SlabSource&>(*imported.straightened)
                         : imported.detail.resample() ? static_cast<SlabSource&>(halved)
-                                                     : *imported.scan;
+                                                     : imported.unbent();
   DUBSAR_ASSIGN(traced.contact, trace_contact(traced.model, density, options, run.progress));
   if (traced.contact.traced && !traced.model.drawing)
     settle_patches(traced.model.patches, traced.model.mesh.vertex_count());

@@ -12,8 +12,8 @@ struct TracedModel {
 };
 
 /// Traces the contact of a separated model with filled holes, on its grid. Slices of the scan around the contact are
-/// read again, and halved where the surface is that of the halved grid; with straightened rays where `imported` has
-/// them. Errors: those of the scan.
-Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const ImportedGrid& imported, StageRun run);
+/// read again, and halved where the surface is that of the halved grid; without rings and with straightened rays where
+/// `imported` has them. Errors: those of the scan.
+Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, ImportedGrid& imported, StageRun run);
 
 }  // namespace dubsar

@@ -128,6 +128,8 @@ Result<Forecast> forecast(SlabSource& scan, const RunShape& wanted, Detail detai
     DUBSAR_ASSIGN(RaysLook look, look_for_bent_rays({scan, 1.0}, scan, {clock, progress}));
     result.bent_rays = std::move(look.bent);
     result.seen_bend = look.seen;
+    HalfResolutionSource halved(scan);
+    DUBSAR_ASSIGN(result.rings, look_for_rings(scan, halved, look.levels, progress));
     if (result.bent_rays) plan_straightening(run, *result.bent_rays, room);
   }
   result.cost = cost_of(run);

@@ -59,7 +59,7 @@ Result<FoundSurface> find_surface(const PipelineOptions& options, ImportedGrid& 
     half.grid.release();  // from here on the samples are enough
   } else {
     found.frame = imported.scan->frame();
-    SlabSource& scan = imported.straightened ? static_cast<SlabSource&>(*imported.straightened) : *imported.scan;
+    SlabSource& scan = imported.straightened ? static_cast<SlabSource&>(*imported.straightened) : imported.unbent();
     DUBSAR_ASSIGN(RefinedSurface refined,
                   refine(scan, half.grid, estimates.sigma,
                          {options.denoise, imported.estimate, options.threshold, options.sample, imported.facts.blur},
@@ -118,6 +118,7 @@ struct Run {
 
   void close_scan() {
     imported.straightened.reset();
+    imported.ringless.reset();
     imported.scan.reset();
   }
 

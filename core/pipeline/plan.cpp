@@ -97,7 +97,7 @@ constexpr std::array<StagePlan, kStages> kRunPlan = {{
     {RunStage::kRays, "while rays are straightened", kNothing | Value::kScan | Value::kHalf,
      kNothing | Value::kStraight, false, 0.1, [](const RunShape& r) { return r.artefacts; },
      bytes_to_straighten, [](const RunShape& r) { return 0.2 + (r.straight ? r.straight->core_s : 0.0); },
-     {{{"rays", 0.3}, {"straighten", 0.7}}}},
+     {{{"rays", 0.2}, {"rings", 0.1}, {"straighten", 0.7}}}},
     {RunStage::kDenoise, "while noise is filtered", kNothing | Value::kHalf, kNothing | Value::kHalf, false, 0.1, always,
      nothing, [](const RunShape& r) { return 4e-9 * r.passes * half_points(r); },
      {{{"estimate", 0.1}, {"denoise", 0.35}, {"estimate", 0.1}, {"denoise", 0.35}, {"estimate", 0.1}}}},

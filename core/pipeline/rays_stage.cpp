@@ -78,13 +78,29 @@ Result<Straightened> straighten_imported(ImportedGrid& imported, const BentRays&
     DUBSAR_ASSIGN(GridStore kept, copy_of(half.grid, place, budget));
     imported.straightened = std::make_unique<GridStore>(std::move(kept));
   } else {
-    DUBSAR_ASSIGN(CountedGrid scan, read_grid(*imported.scan, false, place, budget, run));
+    DUBSAR_ASSIGN(CountedGrid scan, read_grid(imported.unbent(), false, place, budget, run));
     DUBSAR_ASSIGN(done, straighten_grid(scan.grid, bent, 1.0, run));
     DUBSAR_ASSIGN(half, read_grid(scan.grid, true, place_for(half.grid.dims(), budget), budget, run));
     imported.straightened = std::make_unique<GridStore>(std::move(scan.grid));
   }
   DUBSAR_TRY(measure_blur(imported, run));
   return done;
+}
+
+/// Takes rings off the scan, where it has any, and reads it again.
+Result<void> take_rings_off(ImportedGrid& imported, const GreyLevels& levels, const Budget& budget, StageRun run) {
+  run.clock.start("rings", "voxel");
+  DUBSAR_ASSIGN(std::optional<FoundRings> rings, find_rings(*imported.scan, imported.grid.grid, levels, run.progress));
+  run.clock.finish(imported.scan->dims().count());
+  if (!rings) return {};
+  log_info("{}", describe(rings->report));
+  imported.facts.rings = rings->report;
+  imported.ringless = std::make_unique<RinglessSource>(*imported.scan, std::move(rings->field));
+  CountedGrid& half = imported.grid;
+  const Dims dims = half.grid.dims();
+  half.grid.release();
+  DUBSAR_ASSIGN(half, read_grid(imported.unbent(), true, place_for(dims, budget), budget, run));
+  return measure_blur(imported, run);
 }
 
 /// In the halved grid, where rays are straight.
@@ -161,6 +177,7 @@ Result<RaysReport> straighten_rays(ImportedGrid& imported, RunShape& shape, std:
                                    StageRun run) {
   RaysReport report;
   DUBSAR_ASSIGN(const RaysLook look, look_for_bent_rays({imported.grid.grid, 2.0}, *imported.scan, run));
+  DUBSAR_TRY(take_rings_off(imported, look.levels, budget, run));
   report.bent = look.bent;
   report.seen = look.seen;
   if (!report.bent) {

@@ -27,6 +27,7 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
         {"iterations", denoise.iterations},
         {"sigma", denoise.sigma > 0.0 ? json(denoise.sigma) : json("estimated")}}},
       {"sharpen", report.surface_by.sharpen},
+      {"sharpen_wide", report.surface_by.sharpen_wide},
       {"threshold_method", options.threshold ? "given" : name_in(kThresholdMethods, options.estimate.method)},
       {"threshold", report.threshold.value},
       {"levels", name_in(kLevels, options.sample.levels)},
@@ -99,6 +100,12 @@ json artefacts_json(const PipelineReport& report) {
               {"axis_shift_vox", rays.straightened ? json(rays.straightened->axis_shift.pixels) : json(nullptr)},
               {"seen_bend", {{"bend", rays.seen.bend}, {"share", rays.seen.share}}},
               {"text", rays_text(rays, report.scan.frame)}};
+  if (const auto& rings = report.scan.rings)
+    result["rings"] = {{"centre_vox", {rings->look.centre.x, rings->look.centre.y}},
+                       {"deviation", rings->deviation},
+                       {"strongest", rings->strongest},
+                       {"alike", rings->look.alike},
+                       {"text", describe(*rings)}};
   if (!rays.why_not.empty()) result["why_not"] = rays.why_not;
   if (rays.bent) result["advice"] = kAdviceForBentRays;
   return result;
@@ -155,7 +162,8 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
   PipelineReport report{.scan = results.imported.facts,
                         .filters = {results.imported.raw},
                         .threshold = results.threshold,
-                        .surface_by = {results.sampled.sharpen, results.sampled.noise, results.sampled.levels},
+                        .surface_by = {results.sampled.sharpen, results.sampled.sharpen_wide, results.sampled.noise,
+                                       results.sampled.levels},
                         .moves = {results.smoothed.stats, results.settled.stats},
                         .segment = results.separated.segment,
                         .holes = results.separated.holes,
@@ -298,6 +306,7 @@ std::string report_text(const PipelineReport& report) {
     text += fmt::format("blur of edges {:.2f} voxel, measured at {} flat places\n", std::sqrt(blur->variance),
                         blur->places);
   if (report.scan.unmeasured.left_out()) text += describe(report.scan.unmeasured) + "\n";
+  if (report.scan.rings) text += describe(*report.scan.rings) + "\n";
   if (report.scan.rays) text += rays_text(*report.scan.rays, report.scan.frame) + "\n";
   text += fmt::format("detail {}: {}\n", name_in(kDetails, report.detail.detail), report.detail.why);
   if (const auto& band = report.detail.band)

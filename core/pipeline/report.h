@@ -31,6 +31,7 @@ struct VertexMoves {
 /// What was decided where the isosurface was sampled.
 struct SurfaceDecisions {
   float sharpen = 0.0f;               ///< amount that was used
+  float sharpen_wide = 0.0f;          ///< the same, against a Gauss of 7 voxels
   NoiseCavities noise;                ///< that became clay
   std::optional<LocalLevels> levels;  ///< where they were measured
 };

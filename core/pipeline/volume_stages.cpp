@@ -79,7 +79,7 @@ Result<void> measure_blur(ImportedGrid& imported, StageRun run) {
   run.clock.start("blur", "place");
   SlabSource& grid = imported.straightened        ? static_cast<SlabSource&>(*imported.straightened)
                      : imported.detail.resample() ? static_cast<SlabSource&>(imported.grid.grid)
-                                                  : *imported.scan;
+                                                  : imported.unbent();
   const Estimates& raw = imported.raw.estimates;
   DUBSAR_ASSIGN(imported.facts.blur, measure_edge_spread(grid, raw.m_lo, raw.m_hi, run.progress));
   run.clock.finish(imported.facts.blur ? imported.facts.blur->places : 0);

@@ -16,6 +16,7 @@
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
 #include "core/rays/bent_rays.h"
+#include "core/rays/ring_search.h"
 #include "core/volume/formats/import.h"
 #include "core/volume/grid_store.h"
 
@@ -36,6 +37,7 @@ struct ScanFacts {
   std::vector<std::string> warnings;  ///< of the file and of its voxels
   Dims grid;                          ///< after resampling
   std::optional<RaysReport> rays;     ///< where artefacts were looked for
+  std::optional<RingsReport> rings;   ///< that were taken off
   std::optional<EdgeSpread> blur;     ///< of that grid before any filter; nothing where it has no flat surface
 };
 
@@ -54,6 +56,10 @@ struct ImportedGrid {
   /// Instead of the scan (Detail::kScan) or of its halved grid as it was before any filter: with straight rays
   /// (rays_stage.h). Nothing where they are as they are.
   std::unique_ptr<GridStore> straightened;
+  std::unique_ptr<RinglessSource> ringless;  ///< the scan without its rings, where it has any; it reads `scan`
+
+  /// The scan at its own resolution as it is to be read: nothing of it is straightened.
+  SlabSource& unbent() { return ringless ? static_cast<SlabSource&>(*ringless) : *scan; }
 };
 
 /// How the grid of import_grid() was made, as a FilterStep is named.
@@ -100,6 +106,7 @@ struct SampleOptions {
 struct SampledSurface {
   SurfaceSamples samples;
   float sharpen = 0.0f;               ///< amount that was used
+  float sharpen_wide = 0.0f;          ///< the same, against a Gauss of 7 voxels
   std::optional<EdgeSpread> blur;     ///< of the grid before it was sharpened, where that was decided by it
   NoiseCavities noise;                ///< that became clay
   std::optional<LocalLevels> levels;  ///< where they were measured
