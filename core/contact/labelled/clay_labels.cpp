@@ -81,14 +81,14 @@ class ClayRuns {
 
 }  // namespace
 
-PointLabels label_clay(const BitVolume& inside, const ContactBand& band, const std::vector<ClaySide>& side,
-                       BitVolume* unasked) {
+EnvelopeBits label_clay(const BitVolume& inside, const ContactBand& band, const std::vector<ClaySide>& side,
+                        BitVolume* unasked) {
   BitVolume in_band(inside.dims());
-  PointLabels labels(inside);
+  EnvelopeBits labels(inside.dims());
   for (std::uint32_t n = 0; n < band.nodes.size(); ++n) {
     const glm::ivec3 p = band.point(n);
     in_band.set(p.x, p.y, p.z, true);
-    if (side[n] == ClaySide::kEnvelope) labels.set_envelope(p.x, p.y, p.z, true);
+    if (side[n] == ClaySide::kEnvelope) labels.set(p.x, p.y, p.z, true);
   }
   ClayRuns runs(inside, in_band);
   std::vector<std::array<std::int64_t, 2>> votes(runs.size(), {0, 0});
@@ -101,11 +101,11 @@ PointLabels label_clay(const BitVolume& inside, const ContactBand& band, const s
     });
   runs.each([&](std::uint32_t i, const ClayRuns::Run& run, std::int64_t y, std::int64_t z) {
     const auto& [tablet, envelope] = votes[runs.piece(i)];
-    if (envelope > tablet) labels.set_envelope_run(run.begin, run.end, y, z);
+    if (envelope > tablet) labels.set_run(run.begin, run.end, y, z);
     if (unasked != nullptr && envelope + tablet == 0)
       for (std::int32_t x = run.begin; x < run.end; ++x) unasked->set(x, y, z, true);
   });
-  labels.compact();
+  labels.compact(inside);
   return labels;
 }
 

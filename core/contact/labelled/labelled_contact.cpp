@@ -224,7 +224,8 @@ Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const Di
   // The contact as the cut has it, moved to where the scan shows it.
   Sheet sheet;
   {
-    const PointLabels labels = label_clay(model.samples.signs, clay.band, clay.side);
+    const EnvelopeBits envelope = label_clay(model.samples.signs, clay.band, clay.side);
+    const PointLabels labels(model.samples.signs, envelope);
     const ContactEdges edges(labels);
     const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
       return dip_along(clay.band, clay.dips, n, m, axis);
@@ -244,7 +245,8 @@ Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const Di
   for (std::size_t n = 0; n < side.size(); ++n) report.relabelled += side[n] != clay.side[n];
   report.pockets = relabel_faces(model, clay.graph, clay.faces, side);
   BitVolume unasked(model.samples.dims);
-  const PointLabels labels = label_clay(model.samples.signs, clay.band, side, &unasked);
+  const EnvelopeBits envelope = label_clay(model.samples.signs, clay.band, side, &unasked);
+  const PointLabels labels(model.samples.signs, envelope);
   const ContactEdges edges(labels);
   const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
     const float a = distances[n], b = distances[m];

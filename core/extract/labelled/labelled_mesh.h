@@ -1,7 +1,7 @@
 #pragma once
 // The surface of a labelled volume as one dual mesh: between air and clay, and between the tablet's clay and the
 // envelope's. The x-quads that have a label form a closed 2-manifold, whatever the labels (docs/manifold.md), and parts
-// that touch share vertices and x-quads.
+// that touch share vertices and x-quads. What determines connectivity, places and triangles: labelled_surface.h.
 
 #include <cstdint>
 #include <glm/vec3.hpp>

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/extract/labelled/point_labels.h"
+
 namespace dubsar {
 namespace {
 
@@ -26,7 +28,8 @@ TEST(ClayLabels, ClayBeyondTheBandIsThatOfTheBandBesideIt) {
   std::vector<ClaySide> side(band.nodes.size());
   for (std::uint32_t n = 0; n < side.size(); ++n)
     side[n] = band.nodes[n].z >= 20 ? ClaySide::kEnvelope : ClaySide::kTablet;
-  const PointLabels labels = label_clay(inside, band, side);
+  const EnvelopeBits envelope = label_clay(inside, band, side);
+  const PointLabels labels(inside, envelope);
   for (std::int64_t z = -1; z <= kHigh; ++z)
     for (std::int64_t y = -1; y <= kHigh; ++y)
       for (std::int64_t x = -1; x <= kWide; ++x) {
@@ -37,7 +40,7 @@ TEST(ClayLabels, ClayBeyondTheBandIsThatOfTheBandBesideIt) {
         ASSERT_EQ(labels.get(x, y, z), wanted) << x << " " << y << " " << z;
       }
   // A second bit only where a tile holds clay of both: here none does, 20 is where tiles end.
-  EXPECT_LT(labels.bytes(), static_cast<std::size_t>(kWide * kHigh * kHigh / 32));
+  EXPECT_LT(envelope.bytes(), static_cast<std::size_t>(kWide * kHigh * kHigh / 32));
 }
 
 }  // namespace

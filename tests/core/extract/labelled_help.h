@@ -32,6 +32,7 @@ struct Labels {
 /// A labelled volume in the form that build_labelled_mesh() reads.
 struct LabelledScene {
   std::unique_ptr<SurfaceSamples> samples = std::make_unique<SurfaceSamples>();
+  std::unique_ptr<EnvelopeBits> envelope;
   std::unique_ptr<PointLabels> labels;
   std::unique_ptr<EdgeIndex> index;
   std::unique_ptr<ContactEdges> edges;
@@ -42,8 +43,9 @@ struct LabelledScene {
     samples->offset_bits = bits;
     samples->signs = BitVolume(volume.dims);
     each(volume.dims, [&](auto x, auto y, auto z) { samples->signs.set(x, y, z, volume.at(x, y, z) != 0); });
-    labels = std::make_unique<PointLabels>(samples->signs);
-    each(volume.dims, [&](auto x, auto y, auto z) { labels->set_envelope(x, y, z, volume.at(x, y, z) == 2); });
+    envelope = std::make_unique<EnvelopeBits>(volume.dims);
+    each(volume.dims, [&](auto x, auto y, auto z) { envelope->set(x, y, z, volume.at(x, y, z) == 2); });
+    labels = std::make_unique<PointLabels>(samples->signs, *envelope);
     const SampleCounts counts = count_samples(samples->signs);
     samples->offsets.assign(static_cast<std::size_t>(counts.edges), static_cast<std::uint16_t>(1 << (bits - 1)));
     samples->joined.assign(static_cast<std::size_t>(counts.faces), 0);

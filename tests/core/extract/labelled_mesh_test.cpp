@@ -25,8 +25,9 @@ TEST(LabelledMesh, IsTodaysMeshWhereNoTwoClaysAre) {
     SilentProgress progress;
     const EdgeIndex index = *EdgeIndex::create(samples);
     for (const bool envelope : {false, true}) {
-      PointLabels labels(samples.signs);
-      LabelledScene::each(samples.dims, [&](auto x, auto y, auto z) { labels.set_envelope(x, y, z, envelope); });
+      EnvelopeBits bits(samples.dims);
+      LabelledScene::each(samples.dims, [&](auto x, auto y, auto z) { bits.set(x, y, z, envelope); });
+      const PointLabels labels(samples.signs, bits);
       const ContactEdges edges(labels);
       EXPECT_TRUE(edges.all().empty());
       const LabelledMesh labelled = *build_labelled_mesh(samples, index, labels, edges, {}, progress);
@@ -48,7 +49,8 @@ TEST(PointLabels, HoldWhatWasSetAndGiveTilesOfOneClayBack) {
   std::mt19937 random(3);
   BitVolume inside(dims);
   LabelledScene::each(dims, [&](auto x, auto y, auto z) { inside.set(x, y, z, random() % 4 != 0); });
-  PointLabels labels(inside);
+  EnvelopeBits bits(dims);
+  const PointLabels labels(inside, bits);
   Labels wanted(dims);
   LabelledScene::each(dims, [&](auto x, auto y, auto z) { wanted.at(x, y, z) = inside.get(x, y, z) ? 1 : 0; });
   const auto label = [&](std::int64_t x, std::int64_t y, std::int64_t z, std::uint8_t clay) {
@@ -57,24 +59,28 @@ TEST(PointLabels, HoldWhatWasSetAndGiveTilesOfOneClayBack) {
   for (std::int64_t y = 0; y < 9; ++y)
     for (std::int64_t z = 0; z < 11; ++z) {
       const std::int64_t begin = z < 4 ? 0 : 20, end = z < 4 ? 64 : 140;
-      labels.set_envelope_run(begin, end, y, z);
+      bits.set_run(begin, end, y, z);
       for (std::int64_t x = begin; x < end; ++x) label(x, y, z, 2);
     }
   for (int i = 0; i < 300; ++i) {
     const std::int64_t x = 64 + static_cast<std::int64_t>(random() % 86), y = static_cast<std::int64_t>(random() % 9),
                        z = static_cast<std::int64_t>(random() % 11);
     const bool envelope = random() % 2 != 0;
-    labels.set_envelope(x, y, z, envelope);
+    bits.set(x, y, z, envelope);
     label(x, y, z, envelope ? 2 : 1);
   }
-  const std::size_t before = labels.bytes();
-  labels.compact();
-  EXPECT_LT(labels.bytes(), before) << "the first words of four slices are the envelope's alone";
+  const std::size_t before = bits.bytes();
+  bits.compact(inside);
+  EXPECT_LT(bits.bytes(), before) << "the first words of four slices are the envelope's alone";
   LabelledScene::each(dims, [&](auto x, auto y, auto z) {
     ASSERT_EQ(static_cast<int>(labels.get(x, y, z)), wanted.at(x, y, z)) << x << " " << y << " " << z;
     ASSERT_EQ(labels.envelope_word(x >> 6, y, z) >> (x & 63) & 1u, wanted.at(x, y, z) == 2);
     ASSERT_EQ(labels.tablet_word(x >> 6, y, z) >> (x & 63) & 1u, wanted.at(x, y, z) == 1);
   });
+  EnvelopeBits other(dims);
+  LabelledScene::each(dims, [&](auto x, auto y, auto z) { other.set(x, y, z, wanted.at(x, y, z) != 1); });
+  other.compact(inside);
+  EXPECT_TRUE(other == bits) << "points of air count for nothing";
   EXPECT_EQ(labels.get(-1, 0, 0), PointLabel::kAir);
   EXPECT_EQ(labels.envelope_word(0, 9, 0), 0u);
 }
