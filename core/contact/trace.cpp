@@ -240,7 +240,7 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
 /// One mesh of labelled points instead.
 Result<void> trace_labels(SurfaceModel& model, Traced& traced, const ContactOptions& options, ContactReport& report,
                           Progress& progress) {
-  DUBSAR_ASSIGN(const LabelledContactReport labelled,
+  DUBSAR_ASSIGN(LabelledContact labelled,
                 lay_labelled_contact(model,
                                      {.band = traced.band,
                                       .density = traced.density,
@@ -258,7 +258,7 @@ Result<void> trace_labels(SurfaceModel& model, Traced& traced, const ContactOpti
   report.pockets = labelled.pockets;
   report.film_vertices = labelled.film_vertices;
   report.inferred_vertices = labelled.inferred_vertices;
-  report.patches.crossings = labelled.crossing_pairs;
+  report.labelled = std::move(labelled.mesh);
   return {};
 }
 

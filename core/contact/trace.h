@@ -3,11 +3,13 @@
 // are followed, and only where neither is there does the smooth patch stay (docs/evidence.md).
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/base/text/enum_names.h"
+#include "core/extract/labelled/labelled_mesh.h"
 #include "core/parts/surface_model.h"
 #include "core/parts/untangle.h"
 #include "core/volume/slab_source.h"
@@ -47,6 +49,9 @@ struct ContactReport {
   UntangleReport patches;     ///< whether the contact runs through anything
   bool clays_differ = false;  ///< in density, and the contact follows that
   std::int64_t film_vertices = 0, inferred_vertices = 0;
+  /// kLabels: the mesh of all parts, which has gone out of the model; settle_labelled() (settle_labelled.h), or
+  /// put_labelled_mesh() (labelled_model.h), puts it back.
+  std::optional<LabelledMesh> labelled{};
 };
 
 /// Replaces the fill patches between tablet and envelope (fill_holes() must have run) by the traced contact, moves the

@@ -16,6 +16,8 @@ std::uint64_t id_of_side(std::uint32_t a, std::uint32_t b) {
   return kFaceId | ((std::uint64_t{std::min(a, b)} << 31) ^ std::max(a, b));
 }
 
+std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a / b - (a % b != 0 && (a < 0) != (b < 0)); }
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
@@ -79,7 +81,7 @@ QuadCut cut_of(const PlacedPolygon& placed) {
 
 std::optional<ExactPlace> face_point(const QuadMesh& mesh, std::uint32_t a, std::uint32_t b) {
   ExactPlace sum{0};
-  int found = 0;
+  std::int64_t found = 0;
   for (const std::uint32_t q : mesh.quads_of(a)) {
     const PlacedPolygon placed = place_polygon(mesh, q);
     const Polygon& polygon = placed.polygon;
@@ -93,8 +95,11 @@ std::optional<ExactPlace> face_point(const QuadMesh& mesh, std::uint32_t a, std:
       ++found;
     }
   }
-  if (found != 2) return std::nullopt;
-  return ExactPlace{(sum.x + 1) >> 1, (sum.y + 1) >> 1, (sum.z + 1) >> 1};
+  if (found < 2) return std::nullopt;
+  const auto mean = [&](std::int64_t total) {  // the nearest, halves up
+    return floor_div(2 * total + found, 2 * found);
+  };
+  return ExactPlace{mean(sum.x), mean(sum.y), mean(sum.z)};
 }
 
 void CellLook::add(const ExactTriangle& triangle, std::uint32_t quad, std::uint32_t pieces, bool fan) {

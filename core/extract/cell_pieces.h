@@ -67,7 +67,8 @@ class CellLook {
   std::vector<std::uint32_t> quads_;
 };
 
-/// The point of the side between vertices a and b, both with the x-quads beside it; nothing where the side does not
+/// The point of the side between vertices a and b, both with the two x-quads beside it, or the three where three labels
+/// meet: the mean of where they cross their edges; nothing where the side does not
 /// cross a face or an x-quad has no fan.
 std::optional<ExactPlace> face_point(const QuadMesh& mesh, std::uint32_t a, std::uint32_t b);
 

@@ -99,12 +99,14 @@ class Marking {
       const Polygon& polygon = placed.polygon;
       for (int i = 0; i < polygon.size; ++i) {
         const std::uint32_t a = polygon.vertex[index(i)], b = polygon.vertex[index((i + 1) % polygon.size)];
-        if (a > b || (marked_[a] == 0 && marked_[b] == 0))
-          continue;  // the other x-quad of the side has it the other way
+        if (a > b || (marked_[a] == 0 && marked_[b] == 0)) continue;  // another x-quad of the side has it the other way
         if (const auto place = face_point(mesh_, a, b)) cuts.face_points.push_back({a, b, *place});
       }
     }
     std::sort(cuts.face_points.begin(), cuts.face_points.end());
+    const auto same = [](const FacePoint& x, const FacePoint& y) { return !(x < y) && !(y < x); };
+    cuts.face_points.erase(std::unique(cuts.face_points.begin(), cuts.face_points.end(), same),
+                           cuts.face_points.end());  // of three x-quads two run the same way
   }
 
   const QuadMesh& mesh_;

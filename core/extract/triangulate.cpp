@@ -86,8 +86,8 @@ class Cutter {
     std::int64_t triangles = 0, steiner = 0;
   };
 
-  Cutter(const QuadMesh& mesh, std::span<const glm::vec3> normals, FacePoints face_points)
-      : mesh_(mesh), normals_(normals) {
+  Cutter(const QuadMesh& mesh, std::span<const glm::vec3> normals, FacePoints face_points, std::uint32_t guided)
+      : mesh_(mesh), normals_(normals), guided_(guided) {
     if (mesh.embedded) cuts_ = find_cuts(mesh, face_points);
   }
   const std::vector<FacePoint>& face_points() const { return cuts_.face_points; }
@@ -111,7 +111,9 @@ class Cutter {
     if (cut != QuadCut::kFan && !mesh_.has_doubled(q)) {
       const auto& v = mesh_.quads[q];
       const bool first =
-          cut == QuadCut::kFirst || (cut != QuadCut::kSecond && takes_first_diagonal(v, mesh_.positions, normals_));
+          cut == QuadCut::kFirst ||
+          (cut != QuadCut::kSecond &&
+           takes_first_diagonal(v, mesh_.positions, q < guided_ ? normals_ : std::span<const glm::vec3>{}));
       out[0] = first ? Triangle{v[0], v[1], v[2]} : Triangle{v[1], v[2], v[3]};
       out[1] = first ? Triangle{v[0], v[2], v[3]} : Triangle{v[1], v[3], v[0]};
       return {2, 0};
@@ -157,16 +159,17 @@ class Cutter {
 
   const QuadMesh& mesh_;
   std::span<const glm::vec3> normals_;
+  std::uint32_t guided_;
   QuadCuts cuts_;
 };
 
 }  // namespace
 
 Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals, std::size_t more,
-                          FacePoints face_points) {
+                          FacePoints face_points, std::uint32_t guided) {
   DUBSAR_CHECK(vertex_normals.empty() || vertex_normals.size() == mesh.positions.size());
   Triangulation result;
-  const Cutter cutter(mesh, vertex_normals, face_points);
+  const Cutter cutter(mesh, vertex_normals, face_points, guided);
   const std::int64_t quads = mesh.quad_count();
   const std::int64_t chunks = (quads + kQuadsPerChunk - 1) / kQuadsPerChunk;
   std::vector<std::int64_t> triangle_start(static_cast<std::size_t>(chunks)),

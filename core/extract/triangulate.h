@@ -24,8 +24,8 @@ struct Triangulation {
 /// Either way a 4-gon that is not convex in its mean plane is cut at its reflex corner; ties: the diagonal with the
 /// lowest vertex id. Where nothing is promised 5- and 6-gons take only diagonals between opposite corners, and adjacent
 /// doubled corners a fan from the mean of the vertices. Deterministic for any thread count. About 100 ns a quad and
-/// thread. Behind the triangles there is room for `more`.
+/// thread. Behind the triangles there is room for `more`. Normals guide x-quads [0, guided).
 Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals, std::size_t more = 0,
-                          FacePoints face_points = FacePoints::kWhereTheyPart);
+                          FacePoints face_points = FacePoints::kWhereTheyPart, std::uint32_t guided = 0xffffffffu);
 
 }  // namespace dubsar

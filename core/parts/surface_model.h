@@ -10,6 +10,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/extract/labelled/labelled_surface.h"
 #include "core/extract/quad_mesh.h"
 #include "core/extract/surface_samples.h"
 #include "core/extract/triangulate.h"
@@ -46,8 +47,10 @@ struct SurfaceModel {
   std::vector<PartitionId> quad_partition;  ///< per x-quad; empty: not segmented, all 0
   PartitionTable partitions;
   std::vector<FillPatch> patches;
-  /// The triangles of the x-quads, where they are not those of triangulate(): of a labelled mesh (safe_drawing.h),
-  /// whose connectivity does not follow from the samples either. No EXA file holds it.
+  /// Of a surface of parts: the mesh is then that of its x-quads between clay and air, `drawing` their triangles, and
+  /// the first patch the contact, whose first vertices are those of the labelled mesh that are not at the air. All three
+  /// follow from places and normals (labelled_model.h).
+  std::optional<LabelledSurface> labelled;
   std::optional<Triangulation> drawing;
   std::string provenance;  ///< JSON text
   std::vector<ForeignBlock> foreign;

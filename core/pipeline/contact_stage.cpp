@@ -1,5 +1,7 @@
 #include "core/pipeline/contact_stage.h"
 
+#include "core/base/system/log.h"
+#include "core/exa/offsets/settle_labelled.h"
 #include "core/exa/patches/patches.h"
 #include "core/filter/resample.h"
 
@@ -11,7 +13,8 @@ constexpr double kUnevenClay = 2.0;
 
 }  // namespace
 
-Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, ImportedGrid& imported, StageRun run) {
+Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const SettleOptions& settling,
+                          ImportedGrid& imported, StageRun run) {
   TracedModel traced{std::move(model), {}};
   run.clock.start("contact", "point");
   ContactOptions options;
@@ -25,8 +28,17 @@ Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, ImportedGrid& im
                         : imported.detail.resample() ? static_cast<SlabSource&>(halved)
                                                      : imported.unbent();
   DUBSAR_ASSIGN(traced.contact, trace_contact(traced.model, density, options, run.progress));
-  if (traced.contact.traced && !traced.model.drawing)
+  if (traced.contact.labelled) {
+    DUBSAR_ASSIGN(const LabelledSettling settled,
+                  settle_labelled(traced.model, std::move(*traced.contact.labelled), settling.curvature,
+                                  settling.exact_normals, run.progress));
+    traced.contact.labelled.reset();
+    log_debug("contact: {} vertices escape, polygons touched at {} cells, and do at {}", settled.escaped,
+              settled.touching, settled.left);
+    traced.contact.patches.crossings = settled.left;
+  } else if (traced.contact.traced) {
     settle_patches(traced.model.patches, traced.model.mesh.vertex_count());
+  }
   run.clock.finish(traced.contact.points);
   return traced;
 }

@@ -29,14 +29,14 @@ SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, Ve
   return model;
 }
 
-/// What is known of voxels when they are not needed any more.
 /// Patches are kept from crossing a surface whose vertices may leave their cells (untangle.h); of one whose vertices do
-/// not they cross more, so that only what gets none is cut to cross nowhere.
+/// not they cross more, so that only what gets none, or labels, is cut to cross nowhere.
 bool may_be_patched(const PipelineOptions& options) {
-  return options.fill_holes &&
+  return options.fill_holes && options.contact != ContactMesh::kLabels &&
          (options.segment.method == SegmentMethod::kNested || options.segment.method == SegmentMethod::kConcavity);
 }
 
+/// What is known of voxels when they are not needed any more.
 struct FoundSurface {
   SampledSurface sampled;
   Threshold threshold;
@@ -143,7 +143,9 @@ struct Run {
       plan.run.patches = static_cast<double>(patch_triangles(model));
       const Result<void> fits = check_fits(plan.run, plan.room, RunStage::kContact);
       if (fits) {
-        DUBSAR_ASSIGN(TracedModel traced, trace(std::move(model), *options.contact, imported, run));
+        SettleOptions settling = options.settle;
+        settling.curvature = options.curvature;
+        DUBSAR_ASSIGN(TracedModel traced, trace(std::move(model), *options.contact, settling, imported, run));
         model = std::move(traced.model);
         contact = std::move(traced.contact);
       } else {

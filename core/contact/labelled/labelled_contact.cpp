@@ -10,8 +10,8 @@
 #include "core/contact/firmness.h"
 #include "core/contact/labelled/clay_labels.h"
 #include "core/contact/labelled/contact_sheet.h"
-#include "core/contact/labelled/labelled_model.h"
 #include "core/extract/labelled/labelled_mesh.h"
+#include "core/extract/labelled/quad_edges.h"
 #include "core/mesh/evidence.h"
 
 namespace dubsar {
@@ -61,36 +61,34 @@ struct Sheet {
   std::vector<glm::vec3> dual_positions;  ///< of vertices that belong to the surface of the air, too
 };
 
-Sheet sheet_of(const LabelledMesh& labelled, const SurfaceModel& model, const DividedClay& clay,
-               const ContactEdges& edges, const std::vector<float>& along) {
+Sheet sheet_of(const ContactQuads& contact, const DividedClay& clay, const ContactEdges& edges,
+               const std::vector<float>& along) {
   Sheet sheet;
-  const std::vector<glm::vec3> places = places_at_air(labelled, model);
-  const std::vector<bool> at_air = vertices_at_air(labelled);
-  std::vector<std::uint32_t> id(labelled.mesh.positions.size(), kNotOfSheet);
+  const QuadMesh& mesh = contact.mesh;
+  std::vector<std::uint32_t> id(mesh.positions.size(), kNotOfSheet);
   std::vector<std::uint32_t> inner;
-  const auto first = static_cast<std::uint32_t>(labelled.first_contact);
   const auto each_corner = [&](const auto& visit) {
-    for (auto q = first; q < labelled.mesh.quads.size(); ++q) {
-      const Polygon polygon = labelled.mesh.polygon(q);
+    for (std::uint32_t q = 0; q < mesh.quads.size(); ++q) {
+      const Polygon polygon = mesh.polygon(q);
       for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size); ++k) visit(polygon.vertex[k], q);
     }
   };
   each_corner([&](std::uint32_t v, std::uint32_t) {
-    if (!at_air[v] || id[v] != kNotOfSheet) return;
+    if (contact.at_air[v] == 0 || id[v] != kNotOfSheet) return;
     id[v] = static_cast<std::uint32_t>(sheet.dual_positions.size());
-    sheet.dual_positions.push_back(places[v]);
+    sheet.dual_positions.push_back(mesh.positions[v]);
   });
   const auto dual = static_cast<std::uint32_t>(sheet.dual_positions.size());
   each_corner([&](std::uint32_t v, std::uint32_t) {
-    if (at_air[v] || id[v] != kNotOfSheet) return;
+    if (contact.at_air[v] != 0 || id[v] != kNotOfSheet) return;
     id[v] = dual + static_cast<std::uint32_t>(inner.size());
     inner.push_back(v);
-    sheet.mesh.added.push_back(labelled.mesh.positions[v]);
+    sheet.mesh.added.push_back(mesh.positions[v]);
   });
   sheet.mesh.strength.assign(inner.size(), 0.0f);
   std::vector<float> count(inner.size(), 0.0f);
   const auto strength_of = [&](std::uint32_t q) {
-    const GridEdge& e = labelled.edges[q];
+    const GridEdge& e = edges.all()[q];
     const std::uint32_t n = clay.band.at({e.x, e.y, e.z}),
                         m = clay.band.at(glm::ivec3(e.x, e.y, e.z) + unit_step(e.axis));
     return n == ContactBand::kNone || m == ContactBand::kNone ? 0.0f
@@ -102,8 +100,8 @@ Sheet sheet_of(const LabelledMesh& labelled, const SurfaceModel& model, const Di
     count[id[v] - dual] += 1.0f;
   });
   for (std::size_t i = 0; i < count.size(); ++i) sheet.mesh.strength[i] /= std::max(count[i], 1.0f);
-  for (auto q = first; q < labelled.mesh.quads.size(); ++q) {
-    const Polygon polygon = labelled.mesh.polygon(q);
+  for (std::uint32_t q = 0; q < mesh.quads.size(); ++q) {
+    const Polygon polygon = mesh.polygon(q);
     const auto n = static_cast<std::size_t>(polygon.size);
     const auto corner = [&](std::size_t k) { return id[polygon.vertex[n - 1 - k % n]]; };  // out of the tablet
     if (n == 4) {
@@ -111,9 +109,9 @@ Sheet sheet_of(const LabelledMesh& labelled, const SurfaceModel& model, const Di
       sheet.mesh.triangles.push_back({corner(0), corner(2), corner(3)});
       continue;
     }
-    const GridEdge& e = edges.all()[q - first];
+    const GridEdge& e = edges.all()[q];
     glm::vec3 crossing(e.x, e.y, e.z);
-    crossing[e.axis] += along[q - first];
+    crossing[e.axis] += along[q];
     sheet.mesh.added.push_back(crossing);
     sheet.mesh.strength.push_back(strength_of(q));
     const auto middle = dual + static_cast<std::uint32_t>(sheet.mesh.added.size() - 1);
@@ -171,45 +169,41 @@ class NearestEvidence {
 
 /// The faces of the surface belong to whose clay is behind them, so that parts are closed: those of tablet and envelope
 /// all, but where nothing says whose clay it is; those of a cavity that the contact reaches.
-void give_faces_to_labels(SurfaceModel& model, const LabelledMesh& labelled, const BitVolume& unasked) {
+void give_faces_to_labels(SurfaceModel& model, const LabelledMesh& labelled, const EdgeIndex& index,
+                          const PointLabels& labels, const BitVolume& unasked) {
   const PartitionId tablet = model.partitions.find(PartitionKind::kTablet)->id,
                     inside = model.partitions.find(PartitionKind::kEnvelopeInside)->id;
   const auto kind_of = [&](std::uint32_t q) { return model.partitions[model.quad_partition[q]].kind; };
-  const auto is_envelope = [](PartitionKind kind) {
-    return kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
-  };
-  const auto own = [&](std::uint32_t q) {
-    return PointLabel(labelled.pairs[q] >> 2) == PointLabel::kTablet ? tablet : inside;
-  };
-  std::vector<std::uint32_t> reached;
   const auto each_vertex = [&](std::uint32_t q, const auto& visit) {
     const Polygon polygon = labelled.mesh.polygon(q);
     for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size); ++k) visit(polygon.vertex[k]);
   };
-  for (std::uint32_t q = 0; q < labelled.first_contact; ++q) {
+  std::vector<PartitionId> own(labelled.first_contact);
+  std::vector<std::uint8_t> reached_first(labelled.first_contact, 0);
+  each_quad_edge(model.samples.signs, index, [&](std::uint32_t q, const GridEdge& e) {
+    glm::ivec3 clay(e.x, e.y, e.z);
+    if (labels.get(clay.x, clay.y, clay.z) == PointLabel::kAir) clay += unit_step(e.axis);
+    own[q] = labels.get(clay.x, clay.y, clay.z) == PointLabel::kTablet ? tablet : inside;
     const PartitionKind kind = kind_of(q);
     if (kind == PartitionKind::kPores) {
-      bool at_contact = false;
       each_vertex(q, [&](std::uint32_t v) {
-        at_contact = at_contact || labelled.mesh.quads_of(v).back() >= labelled.first_contact;
+        if (labelled.mesh.quads_of(v).back() >= labelled.first_contact) reached_first[q] = 1;
       });
-      if (at_contact) reached.push_back(q);
-      continue;
+      return;
     }
-    if (kind != PartitionKind::kTablet && !is_envelope(kind)) continue;
-    const GridEdge& e = labelled.edges[q];
-    glm::ivec3 clay(e.x, e.y, e.z);
-    if (clay.x < 0 || clay.y < 0 || clay.z < 0 || !model.samples.signs.get(clay.x, clay.y, clay.z))
-      clay += unit_step(e.axis);
-    if (unasked.get(clay.x, clay.y, clay.z)) continue;
-    if ((own(q) == tablet) != (kind == PartitionKind::kTablet)) model.quad_partition[q] = own(q);
-  }
-  for (const std::uint32_t q : reached) model.quad_partition[q] = own(q);
+    const bool envelope = kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
+    if ((kind != PartitionKind::kTablet && !envelope) || unasked.get(clay.x, clay.y, clay.z)) return;
+    if ((own[q] == tablet) != (kind == PartitionKind::kTablet)) model.quad_partition[q] = own[q];
+  });
+  std::vector<std::uint32_t> reached;
+  for (std::uint32_t q = 0; q < reached_first.size(); ++q)
+    if (reached_first[q] != 0) reached.push_back(q);
+  for (const std::uint32_t q : reached) model.quad_partition[q] = own[q];
   for (std::size_t i = 0; i < reached.size(); ++i)
     each_vertex(reached[i], [&](std::uint32_t v) {
       for (const std::uint32_t q : labelled.mesh.quads_of(v)) {
         if (q >= labelled.first_contact || kind_of(q) != PartitionKind::kPores) continue;
-        model.quad_partition[q] = own(q);
+        model.quad_partition[q] = own[q];
         reached.push_back(q);
       }
     });
@@ -217,8 +211,8 @@ void give_faces_to_labels(SurfaceModel& model, const LabelledMesh& labelled, con
 
 }  // namespace
 
-Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress) {
-  LabelledContactReport report;
+Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress) {
+  LabelledContact report;
   const int bits = model.samples.offset_bits;
 
   // The contact as the cut has it, moved to where the scan shows it.
@@ -230,9 +224,9 @@ Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const Di
     const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
       return dip_along(clay.band, clay.dips, n, m, axis);
     });
-    DUBSAR_ASSIGN(const LabelledMesh cut,
-                  build_labelled_mesh(model.samples, clay.index, labels, edges, quantised(along, bits), progress));
-    sheet = sheet_of(cut, model, clay, edges, along);
+    DUBSAR_ASSIGN(const ContactQuads cut,
+                  build_contact_quads(model.samples, clay.index, labels, edges, quantised(along, bits)));
+    sheet = sheet_of(cut, clay, edges, along);
   }
   DUBSAR_ASSIGN(const std::vector<std::uint8_t> evidence, shape_sheet(sheet, clay, progress));
   if (progress.cancelled()) return cancelled_error();
@@ -245,35 +239,29 @@ Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const Di
   for (std::size_t n = 0; n < side.size(); ++n) report.relabelled += side[n] != clay.side[n];
   report.pockets = relabel_faces(model, clay.graph, clay.faces, side);
   BitVolume unasked(model.samples.dims);
-  const EnvelopeBits envelope = label_clay(model.samples.signs, clay.band, side, &unasked);
-  const PointLabels labels(model.samples.signs, envelope);
+  LabelledSurface& surface = model.labelled.emplace();
+  surface.envelope = label_clay(model.samples.signs, clay.band, side, &unasked);
+  const PointLabels labels(model.samples.signs, surface.envelope);
   const ContactEdges edges(labels);
-  const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
-    const float a = distances[n], b = distances[m];
-    if (!std::isfinite(a) || !std::isfinite(b) || !(a * b < 0.0f)) return dip_along(clay.band, clay.dips, n, m, axis);
-    return a / (a - b);
-  });
-  const std::vector<std::uint16_t> offsets = quantised(along, bits);
-  DUBSAR_ASSIGN(const LabelledMesh labelled,
-                build_labelled_mesh(model.samples, clay.index, labels, edges, offsets, progress));
-  report.cells = static_cast<std::int64_t>(labelled.cells.size());
-  give_faces_to_labels(model, labelled, unasked);
-  if (progress.cancelled()) return cancelled_error();
-
+  surface.contact = quantised(crossings_along(clay.band, edges,
+                                              [&](std::uint32_t n, std::uint32_t m, int axis) {
+                                                const float a = distances[n], b = distances[m];
+                                                if (!std::isfinite(a) || !std::isfinite(b) || !(a * b < 0.0f))
+                                                  return dip_along(clay.band, clay.dips, n, m, axis);
+                                                return a / (a - b);
+                                              }),
+                              bits);
+  DUBSAR_ASSIGN(ContactQuads contact, build_contact_quads(model.samples, clay.index, labels, edges, surface.contact));
   const NearestEvidence known(sheet.mesh, evidence);
-  DUBSAR_ASSIGN(const DrawnModel drawn,
-                put_labelled_mesh(
-                    model, labelled, offsets, [&](const glm::vec3& p) { return known.at(p); }, progress));
-  report.rounds = drawn.rounds;
-  report.taken_back = drawn.taken_back;
-  report.crossing_pairs = drawn.crossing_pairs;
-  const std::vector<std::uint8_t>& of_patch = model.patches.front().evidence;
-  report.film_vertices = std::count(of_patch.begin(), of_patch.end(), evidence_byte(Evidence::kFilm));
-  report.inferred_vertices = static_cast<std::int64_t>(of_patch.size()) - report.film_vertices;
-  log_debug(
-      "contact: {} cells with clay of both, {} points given to the other clay, {} points taken back in {} rounds, "
-      "{} pairs of triangles touch",
-      report.cells, report.relabelled, report.taken_back, report.rounds, report.crossing_pairs);
+  for (std::size_t v = 0; v < contact.at_air.size(); ++v)
+    if (contact.at_air[v] == 0) surface.evidence.push_back(known.at(contact.mesh.positions[v]));
+  model.mesh.embedded = true;  // patches have made it another
+  DUBSAR_ASSIGN(report.mesh, put_labels(std::move(model.mesh), std::move(contact), model.samples, clay.index, labels));
+  give_faces_to_labels(model, report.mesh, clay.index, labels, unasked);
+  report.film_vertices = std::ranges::count(surface.evidence, evidence_byte(Evidence::kFilm));
+  report.inferred_vertices = static_cast<std::int64_t>(surface.evidence.size()) - report.film_vertices;
+  log_debug("contact: {} cells with clay of both, {} points given to the other clay", report.mesh.cells.size(),
+            report.relabelled);
   return report;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
-// Tablet, envelope and air as labels of grid points, meshed once: the contact without patches (docs/manifold.md). A
-// trial beside trace.h's way, which it could replace.
+// Tablet, envelope and air as labels of grid points, meshed once: the contact without patches (docs/manifold.md).
 
 #include <optional>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "core/contact/interface_shape.h"
 #include "core/contact/pockets.h"
 #include "core/extract/edge_index.h"
+#include "core/extract/labelled/labelled_mesh.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {
@@ -30,18 +30,15 @@ struct DividedClay {
   ShapeOptions shape;
 };
 
-struct LabelledContactReport {
+struct LabelledContact {
+  LabelledMesh mesh;  ///< with the model's places where no cell is mixed
   std::int64_t pockets = 0, film_vertices = 0, inferred_vertices = 0;
-  std::int64_t cells = 0;           ///< with clay of both
-  std::int64_t relabelled = 0;      ///< points of clay that the sheet's place gave to the other
-  int rounds = 0;                   ///< of taking back
-  std::int64_t taken_back = 0;      ///< points
-  std::int64_t crossing_pairs = 0;  ///< that are left, of all triangles of all parts
+  std::int64_t relabelled = 0;  ///< points of clay that the sheet's place gave to the other
 };
 
-/// Puts the labelled mesh in place of the model's: its x-quads between clay and air with their triangles
-/// (SurfaceModel::drawing), and the contact as one patch that shares vertices with them. Measures the partitions.
-/// Errors of make_tri_mesh(), kCancelled.
-Result<LabelledContactReport> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress);
+/// Gives the model labels (SurfaceModel::labelled), and its faces to the parts that they say. The mesh goes out of the
+/// model: put_labelled_mesh() (labelled_model.h) puts it back. Its vertices must lie in their cells. Errors of
+/// build_labelled_mesh(), kCancelled.
+Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress);
 
 }  // namespace dubsar

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <limits>
+#include <span>
 
 #include "core/base/system/parallel.h"
 #include "core/extract/extract.h"
-#include "core/extract/labelled/quad_edges.h"
 #include "core/extract/row_kernels.h"
 
 namespace dubsar {
 namespace {
 
-constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 constexpr std::int64_t kMixedGrain = 1 << 12;
 
 /// Cells with clay of both, in order.
@@ -84,8 +82,9 @@ class JoinedFaces {
 
 class MixedCells {
  public:
+  /// Without `edges` those of the contact have no numbers.
   MixedCells(const SurfaceSamples& samples, const EdgeIndex& index, const PointLabels& labels,
-             const ContactEdges& edges, const std::vector<std::uint16_t>& contact)
+             const ContactEdges* edges, std::span<const std::uint16_t> contact)
       : samples_(samples), index_(index), labels_(labels), edges_(edges), contact_(contact), faces_(samples, index) {}
 
   CornerLabels corners(const MixedCell& cell) const {
@@ -122,7 +121,7 @@ class MixedCells {
     const bool from_clay = labels_.get(x, y, z) != PointLabel::kAir;
     const bool to_clay = labels_.get(x + (axis == 0), y + (axis == 1), z + (axis == 2)) != PointLabel::kAir;
     if (from_clay && to_clay) {
-      const std::uint32_t number = edges_.number(axis, x, y, z);
+      const std::uint32_t number = edges_ == nullptr ? 0 : edges_->number(axis, x, y, z);
       return {first_contact() + number, contact_.empty() ? step() / 2 : 2u * contact_[number] + 1u};
     }
     const std::uint32_t quad = index_.quad_of(static_cast<int>(axis), x, y, z);
@@ -134,8 +133,19 @@ class MixedCells {
     return static_cast<std::uint32_t>(index_.counts().edges + index_.virtual_edges());
   }
 
-  /// The mean of the crossings of a piece, as build_quad_mesh() has it.
-  glm::vec3 place(const MixedCell& cell, std::uint16_t edges) const {
+  /// Edges of the cell between clay and air.
+  std::uint16_t edges_at_air(const MixedCell& cell) const {
+    const CornerLabels at = corners(cell);
+    unsigned edges = 0;
+    for (unsigned e = 0; e < 12; ++e) {
+      const auto [low, high] = edge_corners(e);
+      if ((at[low] == 0) != (at[high] == 0)) edges |= 1u << e;
+    }
+    return static_cast<std::uint16_t>(edges);
+  }
+
+  /// The mean of crossings, as build_quad_mesh() has it.
+  glm::vec3 mean_of(const MixedCell& cell, std::uint16_t edges) const {
     std::array<unsigned, 3> sum{};
     unsigned count = 0;
     for (unsigned e = 0; e < 12; ++e) {
@@ -161,62 +171,135 @@ class MixedCells {
   const SurfaceSamples& samples_;
   const EdgeIndex& index_;
   const PointLabels& labels_;
-  const ContactEdges& edges_;
-  const std::vector<std::uint16_t>& contact_;
+  const ContactEdges* edges_;
+  std::span<const std::uint16_t> contact_;
   JoinedFaces faces_;
 };
 
-std::vector<std::uint8_t> pairs_of_edges(const PointLabels& labels, const std::vector<GridEdge>& edges) {
-  std::vector<std::uint8_t> pairs(edges.size());
-  parallel_for(static_cast<std::int64_t>(edges.size()), 1 << 14, [&](std::int64_t q) {
-    const GridEdge& e = edges[static_cast<std::size_t>(q)];
-    const PointLabel from = labels.get(e.x, e.y, e.z),
-                     to = labels.get(e.x + (e.axis == 0), e.y + (e.axis == 1), e.z + (e.axis == 2));
-    pairs[static_cast<std::size_t>(q)] = LabelledMesh::label_pair(std::min(from, to), std::max(from, to));
-  });
-  return pairs;
+/// Visits the active edges of a cell: visit(edge, crossing, corner).
+template <class Visit>
+void each_active_edge(const MixedCells& mixed, const MixedCell& cell, const LabelledConfig& config,
+                      const Visit& visit) {
+  for (unsigned e = 0; e < 12; ++e)
+    if (config.active_edges >> e & 1u) visit(e, mixed.crossing(cell, e), config.corners[e]);
 }
+
+template <class Visit>
+void each_mixed_cell(const std::vector<MixedCell>& cells, const Visit& visit) {
+  parallel_for(static_cast<std::int64_t>(cells.size()), kMixedGrain,
+               [&](std::int64_t i) { visit(static_cast<std::size_t>(i)); });
+}
+
+/// Doubled corners that cells find, in lists of some cells each.
+using DoubledLists = std::vector<std::vector<DoubledCorner>>;
+
+void add_doubled(const DoubledLists& lists, std::vector<DoubledCorner>& doubled) {
+  for (const auto& list : lists) doubled.insert(doubled.end(), list.begin(), list.end());
+  std::sort(doubled.begin(), doubled.end(), [](const DoubledCorner& a, const DoubledCorner& b) {
+    return a.quad != b.quad ? a.quad < b.quad : a.corner < b.corner;
+  });
+}
+
+/// For the vertices of a cell that are at the air: the vertices of the mesh without labels whose place they take, and
+/// whose places go.
+struct Heirs {
+  const QuadMesh& before;
+  std::vector<std::uint8_t>& dropped;      ///< of each vertex before
+  std::vector<std::uint32_t>& unlabelled;  ///< of each vertex of mixed cells
+
+  void look(const MixedCells& mixed, const MixedCell& cell, const LabelledConfig& config) const {
+    each_active_edge(mixed, cell, config,
+                     [&](unsigned, const MixedCells::Crossing& crossing, const CellCorner& corner) {
+                       if (mixed.is_contact(crossing)) return;
+                       const Polygon polygon = before.polygon(crossing.quad);
+                       std::uint32_t first = LabelledMesh::kNoVertex;
+                       for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size); ++k) {
+                         if (polygon.corner[k] != corner.corner) continue;
+                         dropped[polygon.vertex[k]] = 1;
+                         first = std::min(first, polygon.vertex[k]);
+                       }
+                       for (const unsigned piece : {corner.first, corner.second})
+                         unlabelled[cell.first_vertex + piece] = std::min(unlabelled[cell.first_vertex + piece], first);
+                     });
+  }
+};
 
 }  // namespace
 
-Result<LabelledMesh> build_labelled_mesh(const SurfaceSamples& samples, const EdgeIndex& index,
+Result<ContactQuads> build_contact_quads(const SurfaceSamples& samples, const EdgeIndex& index,
                                          const PointLabels& labels, const ContactEdges& edges,
-                                         const std::vector<std::uint16_t>& contact, Progress& progress) {
-  if (!samples.closed)
-    return fail(ErrorKind::kUsage, "extract: an open surface found, labels need one that is closed at the border");
+                                         const std::vector<std::uint16_t>& contact) {
   if (!contact.empty() && contact.size() != edges.all().size())
     return fail(ErrorKind::kBadData, "extract: {} crossings of the contact found, {} expected", contact.size(),
                 edges.all().size());
-  LabelledMesh result;
-  DUBSAR_ASSIGN(result.mesh, build_quad_mesh(samples, index, progress));
-  result.edges = edges_of_quads(samples.signs, index);
-  result.edges.insert(result.edges.end(), edges.all().begin(), edges.all().end());
-  result.pairs = pairs_of_edges(labels, result.edges);
-  result.first_contact = static_cast<std::uint32_t>(result.mesh.quads.size());
+  ContactQuads result;
   result.cells = list_mixed_cells(labels);
-  QuadMesh& mesh = result.mesh;
-  const std::size_t before = mesh.positions.size();
-  const MixedCells mixed(samples, index, labels, edges, contact);
+  const MixedCells mixed(samples, index, labels, &edges, contact);
   const LabelledCellTable& table = LabelledCellTable::instance();
-  const auto each_cell = [&](const auto& visit) {
-    parallel_for(static_cast<std::int64_t>(result.cells.size()), kMixedGrain,
-                 [&](std::int64_t i) { visit(static_cast<std::size_t>(i)); });
-  };
+  each_mixed_cell(result.cells, [&](std::size_t i) { result.cells[i].config = mixed.config(result.cells[i]); });
+  std::size_t vertices = 0;
+  for (MixedCell& cell : result.cells) {
+    cell.first_vertex = static_cast<std::uint32_t>(vertices);
+    vertices += table.config(cell.config).vertices;
+  }
+  if (vertices >= LabelledMesh::kNoVertex)
+    return fail(ErrorKind::kTryAgain, "extract: the contact has {} vertices, at most {} can be numbered", vertices,
+                LabelledMesh::kNoVertex - 1);
+  QuadMesh& mesh = result.mesh;
+  mesh.embedded = true;
+  mesh.positions.resize(vertices);
+  mesh.quads.resize(edges.all().size());
+  result.triple.resize(vertices);
+  result.at_air.resize(vertices);
+  DoubledLists doubled(result.cells.size() / kMixedGrain + 1);
+  each_mixed_cell(result.cells, [&](std::size_t i) {
+    const MixedCell& cell = result.cells[i];
+    const LabelledConfig& config = table.config(cell.config);
+    const std::uint16_t air = mixed.edges_at_air(cell);
+    for (unsigned p = 0; p < config.vertices; ++p) {
+      const auto own = static_cast<std::uint16_t>(config.piece_edges[p] & air);
+      mesh.positions[cell.first_vertex + p] = mixed.mean_of(cell, own != 0 ? own : config.piece_edges[p]);
+      result.triple[cell.first_vertex + p] = config.triple >> p & 1u;
+      result.at_air[cell.first_vertex + p] = own != 0;
+    }
+    each_active_edge(mixed, cell, config,
+                     [&](unsigned, const MixedCells::Crossing& crossing, const CellCorner& corner) {
+                       if (!mixed.is_contact(crossing)) return;
+                       const std::uint32_t quad = crossing.quad - mixed.first_contact();
+                       mesh.quads[quad][corner.corner] = cell.first_vertex + corner.first;
+                       if (corner.second != corner.first)
+                         doubled[i / kMixedGrain].push_back({quad, cell.first_vertex + corner.second, corner.corner});
+                     });
+  });
+  add_doubled(doubled, mesh.doubled);
+  mesh.mark_doubled();
+  return result;
+}
+
+Result<LabelledMesh> put_labels(QuadMesh unlabelled, ContactQuads contact, const SurfaceSamples& samples,
+                                const EdgeIndex& index, const PointLabels& labels) {
+  if (!samples.closed)
+    return fail(ErrorKind::kUsage, "extract: an open surface found, labels need one that is closed at the border");
+  constexpr std::uint32_t kNoVertex = LabelledMesh::kNoVertex;
+  LabelledMesh result;
+  result.mesh = std::move(unlabelled);
+  QuadMesh& mesh = result.mesh;
+  const std::size_t before = mesh.positions.size(), own = contact.mesh.positions.size();
+  result.first_contact = static_cast<std::uint32_t>(mesh.quads.size());
+  result.cells = std::move(contact.cells);
+  result.triple = std::move(contact.triple);
+  result.at_air = std::move(contact.at_air);
+  if (mesh.quads.size() + contact.mesh.quads.size() >= kNoVertex || before + own >= kNoVertex)
+    return fail(ErrorKind::kTryAgain, "extract: the labelled surface has {} vertices, at most {} can be numbered",
+                before + own, kNoVertex - 1);
+  const MixedCells mixed(samples, index, labels, nullptr, {});
+  const LabelledCellTable& table = LabelledCellTable::instance();
 
   // The vertices that these cells had without labels go.
   std::vector<std::uint8_t> dropped(before, 0);
-  each_cell([&](std::size_t i) {
-    MixedCell& cell = result.cells[i];
-    cell.config = mixed.config(cell);
-    const LabelledConfig& config = table.config(cell.config);
-    for (unsigned e = 0; e < 12; ++e) {
-      if (!(config.active_edges >> e & 1u)) continue;
-      const auto crossing = mixed.crossing(cell, e);
-      if (mixed.is_contact(crossing)) continue;
-      const Polygon polygon = mesh.polygon(crossing.quad);
-      for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size); ++k)
-        if (polygon.corner[k] == config.corners[e].corner) dropped[polygon.vertex[k]] = 1;
-    }
+  std::vector<std::uint32_t> heirs(own, kNoVertex);
+  each_mixed_cell(result.cells, [&](std::size_t i) {
+    Heirs{mesh, dropped, heirs}.look(mixed, result.cells[i], table.config(result.cells[i].config));
   });
   std::vector<std::uint32_t> new_number(before, kNoVertex);
   for (std::size_t v = 0; v < before; ++v) {
@@ -226,61 +309,50 @@ Result<LabelledMesh> build_labelled_mesh(const SurfaceSamples& samples, const Ed
     result.unlabelled.push_back(static_cast<std::uint32_t>(v));
   }
   result.first_mixed = static_cast<std::uint32_t>(result.unlabelled.size());
-  std::uint64_t vertices = result.first_mixed;
-  for (MixedCell& cell : result.cells) {
-    cell.first_vertex = static_cast<std::uint32_t>(vertices);
-    vertices += table.config(cell.config).vertices;
-  }
-  if (vertices >= kNoVertex || mesh.quads.size() + edges.all().size() >= kNoVertex)
-    return fail(ErrorKind::kTryAgain, "extract: the labelled surface has {} vertices, at most {} can be numbered",
-                vertices, kNoVertex - 1);
-  const auto find_cells = [&] {
-    std::vector<bool> reversed(result.edges.size());
-    for (std::size_t q = 0; q < reversed.size(); ++q) {
-      const GridEdge& e = result.edges[q];
-      reversed[q] = labels.get(e.x, e.y, e.z) == PointLabel(result.pairs[q] & 3u);
-    }
-    result.vertex_cells = cells_of_vertices(mesh, result.edges, reversed);
-  };
-  if (result.cells.empty()) {
-    find_cells();
-    return result;
-  }
+  result.unlabelled.insert(result.unlabelled.end(), heirs.begin(), heirs.end());
+  if (result.cells.empty()) return result;
 
-  mesh.positions.resize(vertices);
-  result.triple.resize(vertices - result.first_mixed);
-  mesh.quads.resize(mesh.quads.size() + edges.all().size());
+  mesh.positions.resize(result.first_mixed);
+  mesh.positions.insert(mesh.positions.end(), contact.mesh.positions.begin(), contact.mesh.positions.end());
   parallel_for(result.first_contact, 1 << 14, [&](std::int64_t q) {
     for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = new_number[v];
   });
   std::vector<DoubledCorner> doubled;
   for (const DoubledCorner& d : mesh.doubled)
     if (new_number[d.vertex] != kNoVertex) doubled.push_back({d.quad, new_number[d.vertex], d.corner});
-  std::vector<std::vector<DoubledCorner>> more(result.cells.size() / kMixedGrain + 1);
-  each_cell([&](std::size_t i) {
+  for (MixedCell& cell : result.cells) cell.first_vertex += result.first_mixed;
+  DoubledLists more(result.cells.size() / kMixedGrain + 1);
+  each_mixed_cell(result.cells, [&](std::size_t i) {
     const MixedCell& cell = result.cells[i];
-    const LabelledConfig& config = table.config(cell.config);
-    for (unsigned p = 0; p < config.vertices; ++p) {
-      mesh.positions[cell.first_vertex + p] = mixed.place(cell, config.piece_edges[p]);
-      result.triple[cell.first_vertex + p - result.first_mixed] = config.triple >> p & 1u;
-    }
-    for (unsigned e = 0; e < 12; ++e) {
-      if (!(config.active_edges >> e & 1u)) continue;
-      const std::uint32_t quad = mixed.crossing(cell, e).quad;
-      const CellCorner& corner = config.corners[e];
-      mesh.quads[quad][corner.corner] = cell.first_vertex + corner.first;
-      if (corner.second != corner.first)
-        more[i / kMixedGrain].push_back({quad, cell.first_vertex + corner.second, corner.corner});
-    }
+    each_active_edge(
+        mixed, cell, table.config(cell.config),
+        [&](unsigned, const MixedCells::Crossing& crossing, const CellCorner& corner) {
+          if (mixed.is_contact(crossing)) return;
+          mesh.quads[crossing.quad][corner.corner] = cell.first_vertex + corner.first;
+          if (corner.second != corner.first)
+            more[i / kMixedGrain].push_back({crossing.quad, cell.first_vertex + corner.second, corner.corner});
+        });
   });
-  for (const auto& chunk : more) doubled.insert(doubled.end(), chunk.begin(), chunk.end());
-  std::sort(doubled.begin(), doubled.end(), [](const DoubledCorner& a, const DoubledCorner& b) {
-    return a.quad != b.quad ? a.quad < b.quad : a.corner < b.corner;
-  });
+  add_doubled(more, doubled);
+  for (auto quad : contact.mesh.quads) {
+    for (std::uint32_t& v : quad) v += result.first_mixed;
+    mesh.quads.push_back(quad);
+  }
+  for (const DoubledCorner& d : contact.mesh.doubled)
+    doubled.push_back({d.quad + result.first_contact, d.vertex + result.first_mixed, d.corner});
   mesh.doubled = std::move(doubled);
   mesh.build_incidence();
-  find_cells();
   return result;
+}
+
+Result<LabelledMesh> build_labelled_mesh(const SurfaceSamples& samples, const EdgeIndex& index,
+                                         const PointLabels& labels, const ContactEdges& edges,
+                                         const std::vector<std::uint16_t>& contact, Progress& progress) {
+  if (!samples.closed)
+    return fail(ErrorKind::kUsage, "extract: an open surface found, labels need one that is closed at the border");
+  DUBSAR_ASSIGN(ContactQuads quads, build_contact_quads(samples, index, labels, edges, contact));
+  DUBSAR_ASSIGN(QuadMesh mesh, build_quad_mesh(samples, index, progress));
+  return put_labels(std::move(mesh), std::move(quads), samples, index, labels);
 }
 
 }  // namespace dubsar

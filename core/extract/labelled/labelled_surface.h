@@ -8,8 +8,9 @@
 //     the face decisions of clay and air (SurfaceSamples::joined) and `envelope` alone, by the table
 //     (labelled_cell_table.h); no geometry. Of `envelope` only the clay of mixed cells matters: any other clay may have
 //     either bit as long as no cell comes to hold both.
-//  2. Places: those of build_labelled_mesh(), the means of the crossings, SurfaceSamples::offsets and `contact`, to the
-//     last bit; but for vertices that escape, whose place is given. All lie inside their cells.
+//  2. Places: those of build_labelled_mesh(), means of crossings (SurfaceSamples::offsets, `contact`), to the last bit;
+//  but
+//     for vertices that escape, whose place is given. All lie inside their cells.
 //  3. Triangles: triangulate() of the mesh with these places (QuadMesh::embedded), as of any surface without labels.
 //  Which
 //     diagonals the envelope allows, fans, points on edges and on faces follow from places rounded to 2^-10 step, in

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/extract/labelled/labelled_mesh.h"
+#include "core/extract/labelled/quad_edges.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/mesh_check.h"
 #include "tests/core/extract/extract_help.h"
@@ -26,6 +27,23 @@ struct Labels {
   }
   std::uint8_t at(std::int64_t x, std::int64_t y, std::int64_t z) const {
     return voxels[static_cast<std::size_t>((z * dims.y + y) * dims.x + x)];
+  }
+};
+
+/// A labelled mesh, and which two labels each x-quad lies between.
+struct BuiltMesh : LabelledMesh {
+  std::vector<std::uint8_t> pairs;
+  static constexpr std::uint8_t label_pair(PointLabel low, PointLabel high) noexcept {
+    return static_cast<std::uint8_t>(static_cast<unsigned>(low) | static_cast<unsigned>(high) << 2);
+  }
+  BuiltMesh(LabelledMesh made, const SurfaceSamples& samples, const EdgeIndex& index, const PointLabels& labels)
+      : LabelledMesh(std::move(made)),
+        pairs(this->mesh.quads.size(), label_pair(PointLabel::kTablet, PointLabel::kEnvelope)) {
+    each_quad_edge(samples.signs, index, [&](std::uint32_t q, const GridEdge& e) {
+      const PointLabel from = labels.get(e.x, e.y, e.z),
+                       to = labels.get(e.x + (e.axis == 0), e.y + (e.axis == 1), e.z + (e.axis == 2));
+      pairs[q] = label_pair(std::min(from, to), std::max(from, to));
+    });
   }
 };
 
@@ -63,11 +81,11 @@ struct LabelledScene {
     for (std::uint8_t& j : samples->joined) j = random() & 1u;
     return *this;
   }
-  LabelledMesh build() const {
+  BuiltMesh build() const {
     SilentProgress progress;
     auto mesh = build_labelled_mesh(*samples, *index, *labels, *edges, contact, progress);
     EXPECT_TRUE(mesh.has_value()) << mesh.error().message;
-    return std::move(*mesh);
+    return BuiltMesh(std::move(*mesh), *samples, *index, *labels);
   }
   template <class Visit>
   static void each(const Dims& dims, const Visit& visit) {
@@ -78,7 +96,7 @@ struct LabelledScene {
 };
 
 /// Triangles of the surface of one label, out of it.
-inline std::vector<Triangle> surface_of(const LabelledMesh& labelled, std::span<const Triangle> triangles,
+inline std::vector<Triangle> surface_of(const BuiltMesh& labelled, std::span<const Triangle> triangles,
                                         std::span<const std::uint32_t> first_triangle, PointLabel label) {
   std::vector<Triangle> surface;
   for (std::uint32_t q = 0; q < labelled.pairs.size(); ++q) {
@@ -93,7 +111,7 @@ inline std::vector<Triangle> surface_of(const LabelledMesh& labelled, std::span<
 }
 
 /// Every label's surface, that of the air, too, is closed, oriented and a 2-manifold; no two triangles are the same.
-inline void expect_closed_manifolds(const LabelledMesh& labelled, std::span<const glm::vec3> positions,
+inline void expect_closed_manifolds(const BuiltMesh& labelled, std::span<const glm::vec3> positions,
                                     std::span<const Triangle> triangles,
                                     std::span<const std::uint32_t> first_triangle) {
   for (const PointLabel label : {PointLabel::kAir, PointLabel::kTablet, PointLabel::kEnvelope}) {

@@ -14,7 +14,7 @@ namespace dubsar {
 namespace {
 
 void expect_manifolds(const LabelledScene& scene) {
-  const LabelledMesh labelled = scene.build();
+  const BuiltMesh labelled = scene.build();
   const Triangulation cut = triangulate(labelled.mesh, {});
   expect_closed_manifolds(labelled, all_positions(labelled.mesh, cut), cut.triangles, cut.first_triangle);
 }
@@ -30,15 +30,15 @@ TEST(LabelledMesh, IsTodaysMeshWhereNoTwoClaysAre) {
       const PointLabels labels(samples.signs, bits);
       const ContactEdges edges(labels);
       EXPECT_TRUE(edges.all().empty());
-      const LabelledMesh labelled = *build_labelled_mesh(samples, index, labels, edges, {}, progress);
+      const BuiltMesh labelled(*build_labelled_mesh(samples, index, labels, edges, {}, progress), samples, index,
+                               labels);
       const QuadMesh today = build(samples);
       EXPECT_TRUE(labelled.mesh.positions == today.positions);
       EXPECT_TRUE(labelled.mesh.quads == today.quads);
       EXPECT_TRUE(labelled.mesh.doubled == today.doubled);
       EXPECT_TRUE(labelled.mesh.incident == today.incident);
       EXPECT_TRUE(labelled.mesh.first_incident == today.first_incident);
-      const auto pair =
-          LabelledMesh::label_pair(PointLabel::kAir, envelope ? PointLabel::kEnvelope : PointLabel::kTablet);
+      const auto pair = BuiltMesh::label_pair(PointLabel::kAir, envelope ? PointLabel::kEnvelope : PointLabel::kTablet);
       EXPECT_TRUE(std::ranges::all_of(labelled.pairs, [&](std::uint8_t p) { return p == pair; }));
     }
   }
@@ -102,7 +102,7 @@ TEST(LabelledMesh, DrawnSmoothAndNestedVolumesGiveClosedManifoldsOfAllLabels) {
 
 TEST(LabelledMesh, EveryGridEdgeBetweenTwoLabelsHasOneXQuadWithItsLabels) {
   const Labels volume = random_labels({9, 11, 70}, 4);
-  const LabelledMesh labelled = LabelledScene(volume).build();
+  const BuiltMesh labelled = LabelledScene(volume).build();
   std::map<int, std::int64_t> wanted, found;
   const auto label = [&](std::int64_t x, std::int64_t y, std::int64_t z) -> int {
     const Dims& d = volume.dims;
@@ -126,7 +126,7 @@ using Place = std::array<long, 3>;
 /// Polygons by the places of their vertices, from the smallest on, with their labels, as seen from the lower one.
 using Polygons = std::multiset<std::pair<std::vector<Place>, std::array<int, 2>>>;
 
-Polygons polygons_of(const LabelledMesh& labelled, const std::function<glm::dvec3(glm::dvec3)>& map, bool reverse,
+Polygons polygons_of(const BuiltMesh& labelled, const std::function<glm::dvec3(glm::dvec3)>& map, bool reverse,
                      const std::array<int, 3>& relabel = {0, 1, 2}, const std::set<Place>& without = {}) {
   Polygons all;
   for (std::uint32_t q = 0; q < labelled.mesh.quads.size(); ++q) {
@@ -212,7 +212,7 @@ TEST(LabelledMesh, ExchangingLabelsExchangesParts) {
   LabelledScene scene(without_faces_in_turn(volume, 8));
   const Labels& labels = volume;
   draw_by_place(scene, [](glm::ivec4 at) { return at; });
-  const LabelledMesh mesh = scene.build();
+  const BuiltMesh mesh = scene.build();
   std::array<int, 3> to{0, 1, 2};
   while (std::next_permutation(to.begin(), to.end())) {
     if (to[0] != 0) continue;  // the border is air
@@ -259,7 +259,7 @@ TEST(LabelledMesh, MirroredVolumesGiveTheMirroredMesh) {
   draw_by_place(other, [&](glm::ivec4 at) {
     return at.w == 0 ? glm::ivec4(x_last - 1 - at.x, at.y, at.z, 4) : glm::ivec4(x_last - at.x, at.y, at.z, at.w);
   });
-  const LabelledMesh mesh = scene.build();
+  const BuiltMesh mesh = scene.build();
   const auto wanted = polygons_of(
       mesh, [&](glm::dvec3 p) { return glm::dvec3(x_last - p.x, p.y, p.z); }, true, {0, 1, 2},
       cells_of_free_choice(whole));

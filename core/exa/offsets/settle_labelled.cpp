@@ -1,0 +1,77 @@
+#include "core/exa/offsets/settle_labelled.h"
+
+#include <utility>
+#include <vector>
+
+#include "core/base/system/parallel.h"
+#include "core/exa/offsets/settle.h"
+#include "core/exa/values/exact.h"
+#include "core/extract/cell_box.h"
+#include "core/extract/piece_moves.h"
+#include "core/parts/labelled_model.h"
+#include "core/relief/curvature/shape_class.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kPlaceGrain = 1 << 14;
+
+/// Where the samples alone have the vertices.
+Result<std::vector<glm::vec3>> places_of_samples(const SurfaceModel& model, Progress& progress) {
+  const PointLabels labels(model.samples.signs, model.labelled->envelope);
+  const ContactEdges edges(labels);
+  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
+  DUBSAR_ASSIGN(LabelledMesh base,
+                build_labelled_mesh(model.samples, index, labels, edges, model.labelled->contact, progress));
+  return std::move(base.mesh.positions);
+}
+
+/// The place that a file can hold of a vertex that wants to be elsewhere.
+glm::vec3 held_place(const glm::vec3& from, const glm::vec3& wanted) {
+  if (from == wanted) return from;
+  const auto k = escape_to(from, kept_in_cell(from, wanted));
+  return k ? escaped(from, *k) : from;
+}
+
+}  // namespace
+
+Result<LabelledSettling> settle_labelled(SurfaceModel& model, LabelledMesh labelled, CurvatureMethod curvature,
+                                         bool exact_normals, Progress& progress) {
+  LabelledSettling report;
+  {
+    DUBSAR_ASSIGN(const std::vector<glm::vec3> from, places_of_samples(model, progress));
+    std::vector<glm::vec3>& places = labelled.mesh.positions;
+    if (from.size() != places.size())
+      return fail(ErrorKind::kInternal, "exa: the labelled mesh of {} vertices is not the one of the samples ({})",
+                  places.size(), from.size());
+    parallel_for(static_cast<std::int64_t>(places.size()), kPlaceGrain, [&](std::int64_t i) {
+      const auto v = static_cast<std::size_t>(i);
+      places[v] = held_place(from[v], places[v]);
+    });
+    labelled.mesh.embedded = true;
+    const PieceMoves moves = part_pieces(
+        labelled.mesh, from, [&](std::uint32_t v, const glm::vec3& wanted) { return held_place(from[v], wanted); });
+    report.touching = moves.touching;
+    report.left = moves.left;
+    for (std::size_t v = 0; v < places.size(); ++v) report.escaped += places[v] != from[v];
+  }
+  if (progress.cancelled()) return cancelled_error();
+  DUBSAR_TRY(put_labelled_mesh(model, labelled));
+  VertexAttributes& attributes = model.attributes;
+  if (!exact_normals && !attributes.normals.empty()) {
+    DUBSAR_ASSIGN(attributes.normals, recomputed_normals(model.mesh, progress));
+    if (!attributes.k_min.empty()) {
+      DUBSAR_ASSIGN(Curvatures found, principal_curvatures(model.mesh, attributes.normals, curvature, progress));
+      attributes.k_min = std::move(found.k_min);
+      attributes.k_max = std::move(found.k_max);
+      if (curvature == CurvatureMethod::kFit) model.settled_sum = settled_sum(model);
+      if (!attributes.shape.empty()) attributes.shape = shape_classes(attributes.k_min, attributes.k_max);
+    }
+  }
+  if (progress.cancelled()) return cancelled_error();
+  draw_labelled_mesh(model, std::move(labelled));
+  DUBSAR_TRY(measure_partitions(model));
+  return report;
+}
+
+}  // namespace dubsar

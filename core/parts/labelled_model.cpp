@@ -1,0 +1,214 @@
+#include "core/parts/labelled_model.h"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "core/base/system/parallel.h"
+#include "core/mesh/evidence.h"
+#include "core/mesh/vertex_attributes.h"
+
+namespace dubsar {
+namespace {
+
+/// The number that each vertex of a labelled mesh has in a model: of those at the air in its mesh, then of the others.
+std::vector<std::uint32_t> numbers_in_model(const LabelledMesh& labelled) {
+  const std::size_t count = labelled.mesh.positions.size();
+  std::uint32_t next = 0;
+  std::vector<std::uint32_t> number(count);
+  for (const bool air : {true, false})
+    for (std::size_t v = air ? 0 : labelled.first_mixed; v < count; ++v)
+      if (labelled.is_at_air(v) == air) number[v] = next++;
+  return number;
+}
+
+std::size_t vertices_at_air(const LabelledMesh& labelled) {
+  return labelled.first_mixed + static_cast<std::size_t>(std::ranges::count(labelled.at_air, std::uint8_t{1}));
+}
+
+/// The triangles of a labelled mesh, taken apart.
+class Divided {
+ public:
+  Divided(const LabelledMesh& labelled, Triangulation cut)
+      : labelled_(labelled),
+        cut_(std::move(cut)),
+        number_(numbers_in_model(labelled)),
+        vertices_(static_cast<std::uint32_t>(number_.size())),
+        dual_(static_cast<std::uint32_t>(vertices_at_air(labelled))),
+        centres_(static_cast<std::uint32_t>(cut_.steiner.size() - cut_.face_points.size())),
+        first_contact_triangle_(cut_.first_triangle[labelled.first_contact]),
+        point_at_air_(cut_.face_points.size(), false) {
+    centres_at_air_ = centres_;
+    for (std::size_t t = 0; t < cut_.triangles.size(); ++t)
+      for (const std::uint32_t v : cut_.triangles[t]) {
+        if (v < vertices_) continue;
+        if (v - vertices_ >= centres_) {
+          if (t < first_contact_triangle_) point_at_air_[v - vertices_ - centres_] = true;
+        } else if (t >= first_contact_triangle_) {
+          centres_at_air_ = std::min(centres_at_air_, v - vertices_);
+        }
+      }
+  }
+
+  void contact(const SurfaceModel& model, FillPatch& patch) {
+    const std::uint32_t own = vertices_ - dual_;
+    patch.extra_positions.resize(own);
+    patch.evidence.resize(own);
+    added_.assign(cut_.steiner.size(), kNowhere);
+    for (std::uint32_t q = labelled_.first_contact; q < labelled_.mesh.quads.size(); ++q) {
+      const std::uint8_t evidence = evidence_of(model, q);
+      for (std::size_t t = cut_.first_triangle[q]; t < cut_.first_triangle[q + 1]; ++t) {
+        Triangle corners = cut_.triangles[t];
+        if (is_shared_point(corners[1])) {  // patches bend at it by themselves
+          corners[1] = cut_.triangles[++t][1];
+        }
+        for (std::uint32_t& v : corners) v = id_in_patch(v, evidence, patch);
+        patch.triangles.push_back({corners[0], corners[2], corners[1]});  // out of the tablet
+      }
+    }
+  }
+
+  Triangulation at_air() {
+    Triangulation drawing;
+    std::vector<std::uint32_t> number_of_point(point_at_air_.size(), 0);
+    drawing.steiner.assign(cut_.steiner.begin(), cut_.steiner.begin() + centres_at_air_);
+    for (std::size_t k = 0; k < point_at_air_.size(); ++k) {
+      if (!point_at_air_[k]) continue;
+      number_of_point[k] = static_cast<std::uint32_t>(drawing.steiner.size());
+      drawing.steiner.push_back(cut_.steiner[centres_ + k]);
+      FacePoint point = cut_.face_points[k];
+      point.a = number_[point.a];
+      point.b = number_[point.b];
+      drawing.face_points.push_back(point);
+    }
+    cut_.triangles.resize(first_contact_triangle_);
+    parallel_for(first_contact_triangle_, 1 << 14, [&](std::int64_t t) {
+      for (std::uint32_t& v : cut_.triangles[static_cast<std::size_t>(t)]) {
+        if (v < vertices_) {
+          v = number_[v];
+        } else {
+          const std::uint32_t added = v - vertices_;
+          v = dual_ + (added < centres_ ? added : number_of_point[added - centres_]);
+        }
+      }
+    });
+    cut_.first_triangle.resize(labelled_.first_contact + std::size_t{1});
+    drawing.triangles = std::move(cut_.triangles);
+    drawing.first_triangle = std::move(cut_.first_triangle);
+    return drawing;
+  }
+
+ private:
+  static constexpr std::uint32_t kNowhere = 0xffffffffu;
+
+  bool is_shared_point(std::uint32_t v) const {
+    return v >= vertices_ + centres_ && point_at_air_[v - vertices_ - centres_];
+  }
+  std::uint8_t evidence_of(const SurfaceModel& model, std::uint32_t q) const {
+    const Polygon polygon = labelled_.mesh.polygon(q);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size); ++k)
+      if (number_[polygon.vertex[k]] >= dual_) return model.labelled->evidence[number_[polygon.vertex[k]] - dual_];
+    return evidence_byte(Evidence::kInferred);
+  }
+  std::uint32_t id_in_patch(std::uint32_t v, std::uint8_t evidence, FillPatch& patch) {
+    if (v < vertices_) return number_[v];
+    std::uint32_t& id = added_[v - vertices_];
+    if (id == kNowhere) {
+      id = dual_ + static_cast<std::uint32_t>(patch.extra_positions.size());
+      patch.extra_positions.push_back(cut_.steiner[v - vertices_]);
+      patch.evidence.push_back(evidence);
+    }
+    return id;
+  }
+
+  const LabelledMesh& labelled_;
+  Triangulation cut_;
+  std::vector<std::uint32_t> number_;
+  std::uint32_t vertices_, dual_, centres_, centres_at_air_ = 0;
+  std::uint32_t first_contact_triangle_;
+  std::vector<bool> point_at_air_;  ///< of the points on faces
+  std::vector<std::uint32_t> added_;
+};
+
+}  // namespace
+
+Result<void> put_labelled_mesh(SurfaceModel& model, const LabelledMesh& labelled) {
+  DUBSAR_CHECK(model.labelled.has_value());
+  const std::size_t vertices = labelled.mesh.positions.size(), dual = vertices_at_air(labelled);
+  if (model.labelled->evidence.size() != vertices - dual)
+    return fail(ErrorKind::kBadData, "surface_model: evidence for {} vertices of the contact found, {} expected",
+                model.labelled->evidence.size(), vertices - dual);
+  const Partition *const tablet = model.partitions.find(PartitionKind::kTablet),
+                         *const envelope = model.partitions.find(PartitionKind::kEnvelopeInside);
+  if (tablet == nullptr || envelope == nullptr)
+    return fail(ErrorKind::kBadData, "surface_model: labels found, but no tablet in an envelope");
+  const std::vector<std::uint32_t> number = numbers_in_model(labelled);
+
+  FillPatch patch;
+  patch.partition = tablet->id;
+  patch.reverse_partition = envelope->id;
+  patch.evidence = model.labelled->evidence;
+  patch.extra_positions.reserve(vertices - dual);
+  std::vector<std::uint32_t> source(dual);
+  QuadMesh mesh;
+  mesh.embedded = labelled.mesh.embedded;
+  mesh.positions.resize(dual);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const glm::vec3& place = labelled.mesh.positions[v];
+    if (number[v] >= dual) {
+      patch.extra_positions.push_back(place);
+      continue;
+    }
+    mesh.positions[number[v]] = place;
+    source[number[v]] = labelled.unlabelled[v];
+  }
+  mesh.quads.assign(labelled.mesh.quads.begin(), labelled.mesh.quads.begin() + labelled.first_contact);
+  parallel_for(mesh.quad_count(), 1 << 14, [&](std::int64_t q) {
+    for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = number[v];
+  });
+  for (const DoubledCorner& d : labelled.mesh.doubled)
+    if (d.quad < labelled.first_contact) mesh.doubled.push_back({d.quad, number[d.vertex], d.corner});
+  mesh.build_incidence();
+  model.mesh = std::move(mesh);
+  for_each_attribute([&](const auto& a) {
+    auto& values = model.attributes.*a.values;
+    if (values.empty()) return;
+    std::remove_reference_t<decltype(values)> gathered(source.size());
+    for (std::size_t i = 0; i < source.size(); ++i) gathered[i] = values[source[i]];
+    values = std::move(gathered);
+  });
+  model.patches.clear();
+  model.patches.push_back(std::move(patch));
+  model.drawing.reset();
+  model.settled_sum = 0;
+  return {};
+}
+
+void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled) {
+  std::vector<glm::vec3> normals;
+  if (!model.attributes.normals.empty()) {
+    normals.resize(labelled.mesh.positions.size(), glm::vec3(0.0f));
+    const std::vector<std::uint32_t> number = numbers_in_model(labelled);
+    for (std::size_t v = 0; v < normals.size(); ++v)
+      if (number[v] < model.attributes.normals.size()) normals[v] = model.attributes.normals[number[v]];
+  }
+  Triangulation cut = triangulate(labelled.mesh, normals, 0, FacePoints::kWhereTheyPart, labelled.first_contact);
+  normals = {};
+  labelled.mesh.first_incident = {};
+  labelled.mesh.incident = {};
+  Divided divided(labelled, std::move(cut));
+  divided.contact(model, model.patches.front());
+  model.drawing = divided.at_air();
+}
+
+std::vector<glm::vec3> labelled_places(const SurfaceModel& model, const LabelledMesh& labelled) {
+  const std::vector<std::uint32_t> number = numbers_in_model(labelled);
+  const std::size_t dual = model.mesh.positions.size();
+  std::vector<glm::vec3> places(number.size());
+  for (std::size_t v = 0; v < places.size(); ++v)
+    places[v] =
+        number[v] < dual ? model.mesh.positions[number[v]] : model.patches.front().extra_positions[number[v] - dual];
+  return places;
+}
+
+}  // namespace dubsar
