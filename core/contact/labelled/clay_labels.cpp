@@ -79,6 +79,44 @@ class ClayRuns {
   DisjointSets pieces_;
 };
 
+constexpr std::uint32_t kLeastIsland = 64;  ///< nodes; fewer in the midst of the other clay are a speck of the cut
+
+/// Nodes of one side that hang together with no clay beyond the band of the same label, few, beside clay of the other.
+std::vector<std::uint32_t> find_islands(const BitVolume& inside, const ContactBand& band,
+                                        const std::vector<ClaySide>& side, const EnvelopeBits& labels) {
+  DisjointSets pieces(side.size());
+  std::vector<bool> anchored(side.size(), false), beside(side.size(), false);
+  const Dims d = inside.dims();
+  const auto count = static_cast<std::uint32_t>(side.size());
+  for (std::uint32_t n = 0; n < count; ++n)
+    each_beside(band.point(n), [&](const glm::ivec3& q) {
+      const std::uint32_t m = band.at(q);
+      if (m != ContactBand::kNone) {
+        if (side[m] == side[n]) pieces.join(n, m);
+        beside[n] = beside[n] || side[m] != side[n];
+        return;
+      }
+      if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= d.x || q.y >= d.y || q.z >= d.z || !inside.get(q.x, q.y, q.z)) return;
+      const bool envelope = labels.word(q.x >> 6, q.y, q.z) >> (q.x & 63) & 1u;
+      const bool same = envelope == (side[n] == ClaySide::kEnvelope);
+      anchored[n] = anchored[n] || same;
+      beside[n] = beside[n] || !same;
+    });
+  std::vector<std::uint32_t> size(count, 0);
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const std::uint32_t root = pieces.root(n);
+    ++size[root];
+    if (anchored[n]) anchored[root] = true;
+    if (beside[n]) beside[root] = true;
+  }
+  std::vector<std::uint32_t> islands;
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const std::uint32_t root = pieces.root(n);
+    if (size[root] < kLeastIsland && !anchored[root] && beside[root]) islands.push_back(n);
+  }
+  return islands;
+}
+
 }  // namespace
 
 EnvelopeBits label_clay(const BitVolume& inside, const ContactBand& band, const std::vector<ClaySide>& side,
@@ -105,6 +143,10 @@ EnvelopeBits label_clay(const BitVolume& inside, const ContactBand& band, const 
     if (unasked != nullptr && envelope + tablet == 0)
       for (std::int32_t x = run.begin; x < run.end; ++x) unasked->set(x, y, z, true);
   });
+  for (const std::uint32_t n : find_islands(inside, band, side, labels)) {
+    const glm::ivec3 p = band.point(n);
+    labels.set(p.x, p.y, p.z, side[n] == ClaySide::kTablet);
+  }
   labels.compact(inside);
   return labels;
 }
