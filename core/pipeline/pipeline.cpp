@@ -32,8 +32,9 @@ SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, Ve
 /// Patches are kept from crossing a surface whose vertices may leave their cells (untangle.h); of one whose vertices do
 /// not they cross more, so that only what gets none, or labels, is cut to cross nowhere.
 bool may_be_patched(const PipelineOptions& options) {
-  return options.fill_holes && options.contact != ContactMesh::kLabels &&
-         (options.segment.method == SegmentMethod::kNested || options.segment.method == SegmentMethod::kConcavity);
+  return options.fill_holes &&
+         (options.segment.method == SegmentMethod::kConcavity ||
+          (options.segment.method == SegmentMethod::kNested && options.contact != ContactMesh::kLabels));
 }
 
 /// What is known of voxels when they are not needed any more.

@@ -105,6 +105,7 @@ Sheet sheet_of(const ContactQuads& contact, const DividedClay& clay, const Conta
     const auto n = static_cast<std::size_t>(polygon.size);
     const auto corner = [&](std::size_t k) { return id[polygon.vertex[n - 1 - k % n]]; };  // out of the tablet
     if (n == 4) {
+      sheet.mesh.quads.push_back(static_cast<std::uint32_t>(sheet.mesh.triangles.size()));
       sheet.mesh.triangles.push_back({corner(0), corner(1), corner(2)});
       sheet.mesh.triangles.push_back({corner(0), corner(2), corner(3)});
       continue;
