@@ -22,11 +22,22 @@ constexpr std::array<double, 4> kScaleRoundings{0.0, 0.15, 0.3, 0.45};
 constexpr int kScaleTiles = 700;
 constexpr std::size_t kScalePlaces = 140;  // that are fitted, of those
 constexpr std::size_t kScaleFewest = 5;
+// A usual width made better by what was found at it has to be as clear as this share of what it was before. On fine
+// meshes it is clearer; on coarse ones hollows of any size look like wider wedges, each time by a quarter.
+constexpr double kScaleAsClear = 0.5;
 
 struct Tried {
   WedgeScale scale;
   double explained = 0.0;  // gain times area
   std::vector<PlacedImprint> placed;
+
+  /// What is explained, and how well where it is: gain over the area of heads, which has no unit and is most where the
+  /// model is neither wider nor narrower than what was pressed.
+  double clear() const {
+    double gain = 0.0, area = 0.0;
+    for (const PlacedImprint& one : placed) gain += one.gain, area += std::pow(one.imprint.width(), 2.0);
+    return area > 0.0 ? explained * std::pow(gain / area, 2.0) : 0.0;
+  }
 };
 
 Tried try_scale(const PatchCells& cells, const WedgeScale& scale, int rounds) {
@@ -62,17 +73,23 @@ WedgeScale wedge_scale(const PatchCells& cells, double width_mm) {
   Tried best;
   for (int size = 0; size < (width_mm > 0.0 ? 1 : kScaleSizes); ++size) {
     const double width = width_mm > 0.0 ? width_mm : root / kScaleFinest * std::exp2(size);
-    if (width < kScaleFewestEdges * cells.mean_edge_mm()) continue;
+    if (!(width_mm > 0.0) && width < kScaleFewestEdges * cells.mean_edge_mm()) continue;
     Tried tried = try_scale(cells, {width, kScaleDepth * width}, 0);
-    if (tried.explained > best.explained) best = std::move(tried);
+    if (size == 0 || tried.clear() > best.clear()) best = std::move(tried);
   }
   if (best.placed.size() < kScaleFewest) return {};
+  double fixed = width_mm;  // whoever says so knows
   const auto usual_now = [&] {
     WedgeScale usual = usual_of(best);
-    if (width_mm > 0.0) usual.width_mm = width_mm;  // whoever says so knows
+    if (fixed > 0.0) usual.width_mm = fixed;
     return usual;
   };
-  best = try_scale(cells, usual_now(), 1);
+  Tried better = try_scale(cells, usual_now(), 1);
+  if (!(fixed > 0.0) && better.clear() < kScaleAsClear * best.clear()) {
+    fixed = best.scale.width_mm;
+    better = try_scale(cells, usual_now(), 1);
+  }
+  best = std::move(better);
   if (best.placed.size() < kScaleFewest) return {};
   const WedgeScale usual = usual_now();
   best = Tried{};

@@ -36,11 +36,11 @@ double plate_depth(const std::vector<Pressed>& wedges, double x, double y) {
 }
 
 /// A closed box whose upper face (z = 0) is written.
-TriMesh plate(const std::vector<Pressed>& wedges) {
+TriMesh plate(const std::vector<Pressed>& wedges, double step = kPlateStep) {
   TriMesh mesh;
   mesh.frame.input_voxel.mm = glm::dvec3(1.0);
   mesh.frame.input_voxel.provenance = "test";
-  const int n = static_cast<int>(2 * kPlateHalf / kPlateStep);
+  const int n = static_cast<int>(2 * kPlateHalf / step);
   const auto add_face = [&](auto&& place, bool turned) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (int j = 0; j <= n; ++j)
@@ -104,6 +104,16 @@ TEST(PressedWedges, AreFoundWhereTheyWerePressed) {
       << found->wedges.size() << " wedges of a usual width of " << found->scale.width_mm << " mm at " << found->places
       << " places";
   EXPECT_LE(found->wedges.size(), page.size() + 1);
+}
+
+TEST(PressedWedges, AreAsWideOnACoarseMeshAsOnAFineOne) {
+  const std::vector<Pressed> page = page_of_wedges();
+  Progress progress;
+  for (const double step : {0.2, 0.5, 0.8}) {  // a head is ten, four and two and a half edges wide
+    const auto found = find_wedges(plate(page, step), {}, progress);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_NEAR(found->scale.width_mm, kPlateWidth, 0.25 * kPlateWidth) << "edges of " << step << " mm";
+  }
 }
 
 TEST(PressedWedges, UnwrittenClayHasNone) {
