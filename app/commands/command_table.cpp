@@ -27,8 +27,8 @@ CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
   CommandTable out;
   for (std::vector<Command>& part :
        std::array{window_commands(), view_commands(), look_commands(styles), shade_commands(styles), light_commands(),
-                  back_face_commands(), mark_commands(), section_commands(), slice_commands(), film_commands(),
-                  file_commands(), work_commands()})
+                  back_face_commands(), mark_commands(), text_commands(), section_commands(), slice_commands(),
+                  film_commands(), file_commands(), work_commands()})
     for (Command& command : part) out.add(std::move(command));
   return out;
 }

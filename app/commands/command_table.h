@@ -69,12 +69,18 @@ std::vector<Command> shade_commands(const std::vector<std::string>& styles);  //
 std::vector<Command> light_commands();                                        ///< light that goes round
 std::vector<Command> back_face_commands();                                    ///< the inner side of surfaces
 std::vector<Command> mark_commands();                                         ///< tools, measures, notes
+std::vector<Command> text_commands();                                         ///< lines of text, ATF, the record
 std::vector<Command> section_commands();                                      ///< cuts and fog
 std::vector<Command> slice_commands();                                        ///< slices of the scan
 std::vector<Command> film_commands();
 std::vector<Command> file_commands();    ///< opening surfaces
 std::vector<Command> work_commands();    ///< copies of the work, and work that was found
 std::vector<Command> window_commands();  ///< help, displays, sources, the window
+
+/// Takes in a line of text between two places, as one step (text_lines.h), and opens it.
+void add_text_line(Editor& editor, const std::vector<SurfacePin>& ends, std::string text);
+/// Says so where a line runs over clay whose surface the scan does not show, and its text tells no damage.
+void warn_of_patch(Editor& editor, const Note& line);
 
 /// Lays the slices through a place of the surface, the free one upright on it, and opens them.
 void slice_through(Editor& editor, const SurfacePin& pin);

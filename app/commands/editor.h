@@ -32,6 +32,7 @@ class Workplace {
   virtual Result<void> switch_file(int step) = 0;            ///< of those that are open; kUsage: there is no other
   virtual bool stop_opening() = 0;                           ///< false: none is being read
   virtual std::string present_folder() const = 0;            ///< where the open dialogue begins
+  virtual std::string today() const = 0;                     ///< as 2026-11-27, UTC
   virtual void say(std::string words) = 0;                   ///< one line over the picture, for some seconds
   virtual void end() = 0;
 

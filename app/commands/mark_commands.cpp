@@ -6,6 +6,7 @@
 #include "app/commands/number_argument.h"
 #include "app/document/document_file.h"
 #include "app/document/mark_file.h"
+#include "core/edition/line_label.h"
 
 namespace dubsar::app {
 namespace {
@@ -16,15 +17,7 @@ constexpr std::array<std::string_view, 8> kTools{"turn",    "distance", "angle",
 
 /// As editions count lines: o. 1, lo.e. 2, r. 3 ...
 std::string next_label(const Document& document, const std::string& side) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kShort{{{"obverse", "o."},
-                                                                                 {"bottom", "lo.e."},
-                                                                                 {"reverse", "r."},
-                                                                                 {"top", "u.e."},
-                                                                                 {"left", "le.e."},
-                                                                                 {"right", "r.e."}}};
-  std::string prefix;
-  for (const auto& [name, abbreviation] : kShort)
-    if (name == side) prefix = std::string(abbreviation) + " ";
+  const std::string prefix = side.empty() ? "" : side_abbreviation(side) + " ";
   for (int number = 1;; ++number) {
     std::string label = fmt::format("{}{}", prefix, number);
     if (std::none_of(document.notes.begin(), document.notes.end(),
@@ -46,26 +39,26 @@ Result<void> add_measure(Editor& editor, MeasureKind kind, const std::vector<Sur
   return {};
 }
 
-void add_note(Editor& editor, const std::vector<SurfacePin>& pins, std::string text) {
+void add_pin(Editor& editor, const SurfacePin& pin, std::string text) {
   Document next = editor.document();
   Note note;
-  note.part = pins.front().part;
-  note.label = next_label(next, pins.front().side);
+  note.part = pin.part;
+  note.label = next_label(next, pin.side);
   note.text = std::move(text);
-  note.at_mm = pins.front().at_mm;
-  note.normal = pins.front().normal;
-  if (pins.size() > 1) {  // along the surface, where it leads from one end to the other
-    Measure way{MeasureKind::kDistance, {}, note.part, {}, {}};
-    for (const SurfacePin& pin : pins) way.points_mm.push_back(pin.at_mm);
-    const auto found = editor.place().figures(way);
-    note.line_mm = found && found->path_mm.size() > 1 ? found->path_mm : way.points_mm;
-  }
+  note.at_mm = pin.at_mm;
+  note.normal = pin.normal;
   note.camera = next.now;
+  note.created = editor.place().today();
   next.notes.push_back(std::move(note));
   give_ids(next);
   editor.change(std::move(next), "note");
   editor.desk().note = editor.document().notes.size();
   editor.desk().drawer = "notes";
+}
+
+void add_note(Editor& editor, const std::vector<SurfacePin>& pins, std::string text) {
+  if (pins.size() > 1) return add_text_line(editor, pins, std::move(text));
+  add_pin(editor, pins.front(), std::move(text));
 }
 
 Result<std::vector<SurfacePin>> pins_of(Editor& editor, const std::vector<glm::dvec3>& points) {
@@ -216,9 +209,11 @@ std::vector<Command> mark_commands() {
   out.push_back(note("add_note", "a note on the surface", 1));
   out.push_back(note("add_line", "a text along a line of the surface", 2));
   out.push_back(open_note());
-  out.push_back(
-      on_list("note_text", kNotes, "what a note says", "its number and a text", &Document::notes,
-              [](Editor&, Document& next, std::size_t at, const std::string& text) { next.notes[at].text = text; }));
+  out.push_back(on_list("note_text", kNotes, "what a note says", "its number and a text", &Document::notes,
+                        [](Editor& editor, Document& next, std::size_t at, const std::string& text) {
+                          next.notes[at].text = text;
+                          warn_of_patch(editor, next.notes[at]);
+                        }));
   out.push_back(
       on_list("note_label", kNotes, "the number of a note, as o. 5", "which one and its number", &Document::notes,
               [](Editor&, Document& next, std::size_t at, const std::string& text) { next.notes[at].label = text; }));

@@ -11,6 +11,7 @@
 #include "app/document/camera_pose.h"
 #include "app/document/keyframe.h"
 #include "app/document/measure.h"
+#include "core/edition/tablet_record.h"
 #include "input/navigation/view_state.h"
 
 namespace dubsar::app {
@@ -57,6 +58,8 @@ struct Note {
   std::vector<glm::dvec3> line_mm;  ///< the text stands along these places, a line's transliteration; empty: a pin
   CameraPose camera;                ///< how it was seen
   std::string id{};                 ///< that it has for life, in all copies of the work
+  std::string translation{};        ///< of a line
+  std::string created{};            ///< day, as 2026-11-27; empty: not known
   friend bool operator==(const Note&, const Note&) = default;
 };
 
@@ -80,6 +83,13 @@ struct SourceFile {
   friend bool operator==(const SourceFile&, const SourceFile&) = default;
 };
 
+/// What is said of the tablet and its text, besides the lines that are pinned to it.
+struct TabletEdition {
+  TabletRecord record;
+  std::string atf{};  ///< the text that was read in, as it is; empty: none
+  friend bool operator==(const TabletEdition&, const TabletEdition&) = default;
+};
+
 struct Document {
   SourceFile source;
   std::vector<Part> parts;
@@ -91,6 +101,7 @@ struct Document {
   double fog = 0.0;  ///< 0..1: how much the far side fades
   std::vector<Measure> measures;
   std::vector<Note> notes;
+  TabletEdition edition;
   ScanView scan;
   std::vector<Keyframe> keyframes;
   friend bool operator==(const Document&, const Document&) = default;

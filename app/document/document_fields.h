@@ -70,7 +70,20 @@ void fields(auto& f, Note& v) {
   f("normal", v.normal);
   f("line_mm", v.line_mm);
   f("camera", v.camera);
+  f("translation", v.translation);
+  f("created", v.created);
   f("id", v.id);
+}
+void fields(auto& f, TabletEdition& v) {
+  f("museum_number", v.record.museum_number);
+  f("p_number", v.record.p_number);
+  f("title", v.record.title);
+  f("institution", v.record.institution);
+  f("rights", v.record.rights);
+  f("creator", v.record.creator);
+  f("language", v.record.language);
+  f("translated", v.record.translated);
+  f("atf", v.atf);
 }
 void fields(auto& f, ScanView& v) {
   f("cursor_mm", v.cursor_mm);
@@ -115,6 +128,7 @@ void fields(auto& f, Document& v) {
   f("fog", v.fog);
   f("measures", v.measures);
   f("notes", v.notes);
+  f("edition", v.edition);
   f("scan", v.scan);
   f("keyframes", v.keyframes);
 }

@@ -16,7 +16,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr int kVersion = 5, kOldest = 1;
+constexpr int kVersion = 6, kOldest = 1;
 constexpr const char* kSaves = "saves";
 
 /// What ranges alone do not say.

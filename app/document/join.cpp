@@ -122,6 +122,7 @@ Document join_marks(const Document* base, const Document& mine, const Document& 
   Document out = mine;
   out.notes = join_things(base != nullptr ? &base->notes : nullptr, mine.notes, theirs.notes);
   out.measures = join_things(base != nullptr ? &base->measures : nullptr, mine.measures, theirs.measures);
+  if (base == nullptr && out.edition == TabletEdition{}) out.edition = theirs.edition;
   out.keyframes =
       join_films(base != nullptr ? base->keyframes : std::vector<Keyframe>(), mine.keyframes, theirs.keyframes);
   return out;
@@ -159,6 +160,8 @@ std::string marks_more(const Document& before, const Document& after) {
   std::string out;
   for (const auto& [count, name] : counts)
     if (count > 0) out += (out.empty() ? "" : ", ") + count_text(count, name);
+  if (before.edition == TabletEdition{} && after.edition != TabletEdition{})
+    out += std::string(out.empty() ? "" : ", ") + "what is said of the tablet";
   return out;
 }
 

@@ -17,11 +17,12 @@ Document join(const Document* base, const Document& mine, const Document& theirs
 /// The same of notes, measures and keyframes alone; all else is mine.
 Document join_marks(const Document* base, const Document& mine, const Document& theirs);
 
-/// `mine` with the notes, measures and keyframes of `theirs` that it lacks.
+/// `mine` with the notes, measures and keyframes of `theirs` that it lacks, and what is said of the tablet where mine
+/// says nothing.
 Document add_marks(const Document& mine, const Document& theirs);
 
 /// How many notes, measures and keyframes `after` has that `before` has not, in words: "2 notes, 1 measure"; empty:
-/// none.
+/// none. What is said of the tablet is named where it was not there.
 std::string marks_more(const Document& before, const Document& after);
 
 }  // namespace dubsar::app

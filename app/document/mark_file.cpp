@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/document/field_json.h"
+#include "core/base/files/file_fingerprint.h"
 #include "core/base/files/kept_file.h"
 #include "core/base/text/json_text.h"
 
@@ -46,6 +47,14 @@ std::string file_uri(const std::string& path) {
     out += plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
   }
   return out;
+}
+
+/// A path in three dimensions, as Well-Known Text (ISO 19125) has it.
+std::string wkt_of(const std::vector<glm::dvec3>& points) {
+  std::string out;
+  for (const glm::dvec3& p : points)
+    out += fmt::format("{}{:.3f} {:.3f} {:.3f}", out.empty() ? "" : ", ", p.x, p.y, p.z);
+  return "LINESTRING Z (" + out + ")";
 }
 
 /// What a file of this program says it is; empty: it is none. Annotations say what wrote them.
@@ -96,50 +105,68 @@ std::string format_notes(const Document& document) {
                             {"at_mm", place_json(note.at_mm)},
                             {"normal", vector_json(note.normal)},
                             {"line_mm", path_json(note.line_mm)},
+                            {"translation", note.translation},
+                            {"created", note.created},
                             {"camera", camera_json(note.camera)}});
   return text_of(out);
 }
 
 std::string format_annotations(const Document& document) {
   const std::string source = file_uri(document.source.path);
+  const TabletRecord& record = document.edition.record;
+  // What an id begins with: of this surface, under whatever name.
+  const std::string own = "urn:dubsar:" + (document.source.content.empty() ? bytes_checksum(document.source.path)
+                                                                           : document.source.content);
   ordered_json items = ordered_json::array();
-  for (std::size_t i = 0; i < document.notes.size(); ++i) {
-    const Note& note = document.notes[i];
-    const auto point = [&](const glm::dvec3& p) {
-      return ordered_json{{"type", "PointSelector"},
-                          {"x", stored::rounded_mm(p.x)},
-                          {"y", stored::rounded_mm(p.y)},
-                          {"z", stored::rounded_mm(p.z)}};
+  for (const Note& note : document.notes) {
+    const bool line = note.line_mm.size() > 1;
+    ordered_json selector{{"type", "PointSelector"},
+                          {"x", stored::rounded_mm(note.at_mm.x)},
+                          {"y", stored::rounded_mm(note.at_mm.y)},
+                          {"z", stored::rounded_mm(note.at_mm.z)}};
+    if (line) selector = {{"type", "WktSelector"}, {"value", wkt_of(note.line_mm)}};
+    selector["unit"] = "mm";
+    selector["frame"] = "of the scan: voxel number times voxel size";
+    const auto body_of = [&](const std::string& text, const std::string& language) {
+      ordered_json body{{"type", "TextualBody"}, {"value", text}, {"format", "text/plain"}};
+      if (!language.empty()) body["language"] = language;
+      return body;
     };
-    ordered_json selector = point(note.at_mm);
-    if (note.line_mm.size() > 1) {
-      selector = {{"type", "RangeSelector"},
-                  {"startSelector", point(note.line_mm.front())},
-                  {"endSelector", point(note.line_mm.back())}};
-    }
-    ordered_json body{{"type", "TextualBody"}, {"value", note.text}, {"format", "text/plain"}};
-    ordered_json item{{"id", fmt::format("urn:dubsar:note:{}", i + 1)}, {"type", "Annotation"}};
-    item["motivation"] = note.line_mm.size() > 1 ? "transcribing" : "commenting";
+    ordered_json item{{"id", own + ":note:" + note.id}, {"type", "Annotation"}};
+    // The vocabulary of W3C has no transcription; the one of IIIF calls it supplementing.
+    item["motivation"] = line ? ordered_json::array({"describing", "supplementing"}) : ordered_json("commenting");
     if (!note.label.empty()) item["label"] = note.label;
-    item["body"] = std::move(body);
+    if (!record.creator.empty()) item["creator"] = {{"type", "Person"}, {"name", record.creator}};
+    if (!note.created.empty()) item["created"] = note.created + "T00:00:00Z";
+    if (!record.rights.empty()) item["rights"] = record.rights;
+    item["body"] = body_of(note.text, line ? record.language.empty() ? "akk-Latn" : record.language : std::string());
+    if (!note.translation.empty())
+      item["body"] = ordered_json::array(
+          {item["body"], body_of(note.translation, record.translated.empty() ? "en" : record.translated)});
     item["target"] = {{"source", source}, {"selector", std::move(selector)}};
     items.push_back(std::move(item));
   }
   const std::size_t total = items.size();
   const ordered_json terms{{"PointSelector", "http://iiif.io/api/presentation/4#PointSelector"},
+                           {"WktSelector", "http://iiif.io/api/presentation/4#WktSelector"},
                            {"x", "http://iiif.io/api/presentation/4#x"},
                            {"y", "http://iiif.io/api/presentation/4#y"},
                            {"z", "http://iiif.io/api/presentation/4#z"},
-                           {"transcribing", "http://www.w3.org/ns/oa#transcribing"},
+                           {"unit", "http://iiif.io/api/presentation/4#unit"},
+                           {"frame", "urn:dubsar:frame"},
+                           {"supplementing", "http://iiif.io/api/presentation/3#supplementing"},
                            {"label", "http://www.w3.org/2000/01/rdf-schema#label"}};
+  const std::string name = name_of(record);
   ordered_json out;
   out["@context"] = ordered_json::array({kAnnotationContext, terms});
-  out["id"] = "urn:dubsar:notes";
+  out["id"] = own + ":notes";
   out["type"] = "AnnotationCollection";
-  out["label"] = "notes on " + fs::path(document.source.path).filename().string();
+  out["label"] = "notes on " + (name.empty() ? fs::path(document.source.path).filename().string() : name);
+  if (!record.creator.empty()) out["creator"] = {{"type", "Person"}, {"name", record.creator}};
+  if (!record.rights.empty()) out["rights"] = record.rights;
   out["generator"] = {{"type", "Software"}, {"name", "dubsar"}};
   out["total"] = total;
-  out["first"] = {{"id", "urn:dubsar:notes:1"}, {"type", "AnnotationPage"}, {"startIndex", 0}, {"items", items}};
+  out["first"] = {{"id", own + ":notes:1"}, {"type", "AnnotationPage"}, {"startIndex", 0}, {"items", items}};
   return text_of(out);
 }
 

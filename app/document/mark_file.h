@@ -16,7 +16,8 @@ std::string format_measures(const Document& document);
 std::string format_notes(const Document& document);
 
 /// An AnnotationCollection of the Web Annotation Data Model (W3C, 2017) with one page; places are PointSelectors with
-/// x, y and z in mm of the scan, as drafts for 3D of the IIIF have them.
+/// x, y and z in mm of the scan, lines WktSelectors, as drafts for 3D of the IIIF have them. Ids tell tablets apart;
+/// languages, creator, rights and days are those of the record and the notes.
 std::string format_annotations(const Document& document);
 
 /// Writes `text`, one of those above, a film or a document, where nothing is yet, or a file of the same format that

@@ -13,8 +13,9 @@ namespace dubsar::app {
 /// A place on the surface, in mm of the scan.
 struct SurfacePin {
   glm::dvec3 at_mm{0.0}, normal{0.0, 0.0, 1.0};
-  std::string part{};  ///< that it lies on; empty: none of them
-  std::string side{};  ///< that looks its way: "obverse" ...
+  std::string part{};     ///< that it lies on; empty: none of them
+  std::string side{};     ///< that looks its way: "obverse" ...
+  bool inferred = false;  ///< the scan shows no surface there
   friend bool operator==(const SurfacePin&, const SurfacePin&) = default;
 };
 

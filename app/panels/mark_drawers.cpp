@@ -6,8 +6,12 @@
 #include <array>
 #include <string_view>
 
+#include "app/document/text_lines.h"
 #include "app/panels/panel_kit.h"
 #include "app/stage/marks.h"
+#include "core/edition/brackets.h"
+#include "core/edition/line_label.h"
+#include "core/edition/typed_letters.h"
 
 namespace dubsar::app {
 namespace {
@@ -45,6 +49,37 @@ std::optional<std::size_t> letter_buttons(const Board& desk, const std::string& 
     behind = at + std::string_view(kLetters[i]).size();
   }
   return behind;
+}
+
+/// Enter makes the next line; what is wrong with brackets; the translation. Below the text field.
+void draw_line_below(const Board& desk, std::size_t at) {
+  const Note& note = desk.state.document.notes[at];
+  if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGuiKey_Enter))
+    desk.commands.push_back(fmt::format("next_line {}", at + 1));
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("sz s, t, h, qi2 become letters; Enter makes the next line");
+  for (const BracketFault& fault : bracket_faults(note.text))
+    ImGui::TextColored(ImColor(kAccent), "%s %s", fault.bracket.c_str(),
+                       fault.kind == BracketFault::Kind::kNotClosed   ? "is not closed"
+                       : fault.kind == BracketFault::Kind::kNotOpened ? "closes nothing"
+                                                                      : "stands within another one");
+  std::string typed;
+  if (type_in("##translation", note.translation, typed, kFieldPx))
+    desk.commands.push_back(fmt::format("line_translation {} {}", at + 1, typed));
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("translation");
+  button(desk, "next line", fmt::format("next_line {}", at + 1), false);
+  ImGui::SameLine();
+  button(desk, "line above", fmt::format("insert_line {}", at + 1), false);
+}
+
+/// Lines of a transliteration that was read in and are not on the clay yet.
+void draw_waiting(const Board& desk) {
+  if (desk.state.document.edition.atf.empty()) return;
+  const std::vector<TextPassage> waiting = waiting_lines(desk.state.document);
+  if (waiting.empty()) return;
+  say_dim(fmt::format("{} lines wait to be pinned (tool Line):", waiting.size()).c_str());
+  constexpr std::size_t kShown = 12;
+  for (std::size_t k = 0; k < std::min(waiting.size(), kShown); ++k)
+    say_dim(fmt::format("{}  {}", line_label(waiting[k].spot), waiting[k].text).c_str());
 }
 
 }  // namespace
@@ -100,8 +135,9 @@ void draw_notes(const Board& desk) {
       if (goes_on) from = static_cast<std::size_t>(behind);
       if (from) kept.SetInt(lettered, 0);
       kept.SetInt(answered, placed);
-      if (type_in("##text", note.text, typed, kFieldPx, from))
+      if (type_in("##text", note.text, typed, kFieldPx, from, is_text_line(note) ? typed_letters : nullptr))
         desk.commands.push_back(fmt::format("note_text {} {}", i + 1, typed));
+      if (is_text_line(note)) draw_line_below(desk, i);
       if (fresh) ImGui::SetScrollHereY();
       const std::size_t at = from.value_or(caret_in("##text", note.text));
       if (const auto with = letter_buttons(desk, fmt::format("note_text {} ", i + 1), note.text, at)) {
@@ -111,6 +147,7 @@ void draw_notes(const Board& desk) {
     }
     ImGui::PopID();
   }
+  draw_waiting(desk);
 }
 
 void draw_cuts(const Board& desk) {

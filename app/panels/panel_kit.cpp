@@ -36,9 +36,21 @@ bool sized_button(const Board& desk, const char* label, const std::string& comma
 struct Caret {
   int* wanted;  ///< where it is to go, once the field has the keys; nothing is marked then
   int* last;    ///< where it was while the field had them
+  std::string (*letters)(std::string_view) = nullptr;  ///< what becomes of what is typed
 };
+void change_letters(ImGuiInputTextCallbackData* field, std::string (*letters)(std::string_view)) {
+  const std::string_view now(field->Buf, static_cast<std::size_t>(field->BufTextLen));
+  const std::string text = letters(now);
+  if (text == now) return;
+  const std::string before = letters(now.substr(0, static_cast<std::size_t>(field->CursorPos)));
+  field->DeleteChars(0, field->BufTextLen);
+  field->InsertChars(0, text.c_str());
+  field->CursorPos = field->SelectionStart = field->SelectionEnd =
+      std::min(static_cast<int>(before.size()), field->BufTextLen);
+}
 int keep_caret(ImGuiInputTextCallbackData* field) {
   const Caret& caret = *static_cast<const Caret*>(field->UserData);
+  if (caret.letters != nullptr) change_letters(field, caret.letters);
   if (const int wanted = std::exchange(*caret.wanted, 0); wanted != 0)
     field->CursorPos = field->SelectionStart = field->SelectionEnd = std::min(wanted - 1, field->BufTextLen);
   *caret.last = field->CursorPos + 1;
@@ -101,11 +113,12 @@ ImTextureID texture_id(std::uint32_t texture) {
 }
 
 bool type_in(const char* id, const std::string& now, std::string& typed, float width,
-             std::optional<std::size_t> goes_on) {
+             std::optional<std::size_t> goes_on, std::string (*letters)(std::string_view)) {
   std::array<char, 2048> text{};
   now.copy(text.data(), std::min(now.size(), text.size() - 1));
   ImGui::SetNextItemWidth(width);
   Caret caret = caret_of(id);
+  caret.letters = letters;
   if (goes_on) {
     *caret.wanted = static_cast<int>(*goes_on) + 1;
     ImGui::SetKeyboardFocusHere();

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/panels/desk_panels.h"
@@ -43,9 +44,10 @@ void say_dim(const char* words);
 /// What ImGui calls a texture of GL's.
 ImTextureID texture_id(std::uint32_t texture);
 /// A line of text that is kept while it is typed in, and told as it changes: true then. `id` names it in its window.
-/// `goes_on`: it takes the keys from now on, behind so many bytes of what stands there.
+/// `goes_on`: it takes the keys from now on, behind so many bytes of what stands there. `letters`: what becomes of all
+/// that stands there with each key; once more of that changes nothing.
 bool type_in(const char* id, const std::string& now, std::string& typed, float width,
-             std::optional<std::size_t> goes_on = std::nullopt);
+             std::optional<std::size_t> goes_on = std::nullopt, std::string (*letters)(std::string_view) = nullptr);
 /// How many bytes of `text` stand before the place where was typed last in the field of that name; all, where never.
 std::size_t caret_in(const char* id, const std::string& text);
 

@@ -105,6 +105,7 @@ EvidenceShares SurfaceEvidence::of(std::uint8_t partitions) const {
 Result<SurfacePin> pin_on(const TriMesh& mesh, const std::vector<Part>& parts, const glm::dvec3& at_mm) {
   DUBSAR_ASSIGN(const SurfacePlace place, nearest_place(mesh, at_mm));
   SurfacePin out{place.at_mm, place.normal, {}, {}};
+  out.inferred = place.triangle < mesh.triangle_inferred.size() && mesh.triangle_inferred[place.triangle] != 0;
   const PartitionId id = mesh.partition_of(place.triangle);
   for (const Part& part : parts)
     if ((part.partitions >> id & 1) != 0) out.part = part.name;

@@ -107,6 +107,7 @@ class Viewer final : public Workplace {
   void end() override;
   /// False where the work cannot be kept, which is said; the second time it may all the same.
   bool may_end();
+  std::string today() const override;
   Result<SurfacePin> pin(const glm::dvec3& at_mm) override;
   Result<MeasureFigures> figures(const Measure& measure) override;
   Reach reach(const glm::dvec3& home_direction) override;

@@ -1,5 +1,6 @@
 // What tools and commands of a session do to the surface: places under the pointer, clicks, measures, pictures, films.
 
+#include <chrono>
 #include <filesystem>
 #include <glm/geometric.hpp>
 
@@ -105,6 +106,12 @@ void Viewer::click(const glm::dvec2& at) {
   const glm::dvec3 there = scan_place(*picked);
   ++at_.presses;
   run(fmt::format("point {:.6f},{:.6f},{:.6f}", there.x, there.y, there.z));
+}
+
+std::string Viewer::today() const {
+  const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now()));
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(day.year()), static_cast<unsigned>(day.month()),
+                     static_cast<unsigned>(day.day()));
 }
 
 Result<SurfacePin> Viewer::pin(const glm::dvec3& at_mm) {

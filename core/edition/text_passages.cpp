@@ -124,7 +124,7 @@ class PassageWriter {
       }
     }
     std::vector<AtfLine> fresh{
-        line(fmt::format("{}. {}", passage.spot.number, passage.text.empty() ? "x" : passage.text))};
+        line(fmt::format("{}. {}", passage.spot.number, passage.text.empty() ? "..." : passage.text))};
     if (!passage.translation.empty()) fresh.push_back(line(translation_bytes(passage)));
     lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), fresh.begin(), fresh.end());
   }
@@ -183,6 +183,7 @@ std::string language_of_translation(const TabletRecord& record) {
 }  // namespace
 
 std::vector<TextPassage> passages_of(const AtfFile& file, std::string_view translated_into) {
+  if (translated_into.empty()) translated_into = "en";
   AtfFile first;
   bool any = false;
   for (const AtfLine& line : file.lines) {

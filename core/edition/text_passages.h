@@ -32,7 +32,8 @@ struct TextPassage {
   friend bool operator==(const TextPassage&, const TextPassage&) = default;
 };
 
-/// The numbered lines of the first text of a file, in its order. Translations are those of "#tr.XX:" lines.
+/// The numbered lines of the first text of a file, in its order. Translations are those of "#tr.XX:" lines; empty: of
+/// English.
 std::vector<TextPassage> passages_of(const AtfFile& file, std::string_view translated_into = "en");
 
 /// One text of a file that may hold many: the one of this P-number, else of this name, else the only one. kBadData: no

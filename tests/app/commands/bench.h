@@ -45,11 +45,12 @@ class FakePlace final : public Workplace {
   }
   bool stop_opening() override { return std::exchange(opening, false); }
   std::string present_folder() const override { return "/"; }
+  std::string today() const override { return "2026-11-27"; }
   void say(std::string words) override { said = std::move(words); }
   void end() override { ended = true; }
-  // A surface that is level at z = 5 of the scan.
+  // A surface that is level at z = 5 of the scan, which does not show it beyond y = 40.
   Result<SurfacePin> pin(const glm::dvec3& at) override {
-    return SurfacePin{{at.x, at.y, 5.0}, {0, 0, 1}, "tablet", at.x < 0 ? "reverse" : "obverse"};
+    return SurfacePin{{at.x, at.y, 5.0}, {0, 0, 1}, "tablet", at.x < 0 ? "reverse" : "obverse", at.y > 40.0};
   }
   Result<MeasureFigures> figures(const Measure& measure) override {
     MeasureFigures out;
@@ -122,6 +123,11 @@ inline std::vector<std::string> ways_to_say(const CommandTable& commands) {
                                       "write_measures /nowhere/measures.json",
                                       "add_note 1,2,3 a-na \u1e2ba-x",
                                       "add_line -1,2,3 -9,2,3 um-ma",
+                                      "next_line 2",
+                                      "insert_line 2",
+                                      "line_translation 2 thus (says)",
+                                      "read_atf /nowhere/tablet.atf",
+                                      "write_atf /nowhere/tablet.atf",
                                       "open_note 1",
                                       "note_text 1 other words",
                                       "note_label 1 o. 17",

@@ -39,7 +39,11 @@ Document rich(unsigned seed) {
                 vector(),
                 {vector(), vector()},
                 camera(),
-                "n1"}};
+                "n1",
+                "to \u1e62illi",
+                "2026-11-27"}};
+  out.edition = {{"AO 8295", "P999001", "title", "Louvre", "CC BY", "A. Scribe", "akk-Latn", "en"},
+                 "&P999001 = A\r\n1. \u0161u\n"};
   out.scan = {vector(), vector(), {0, 1, 0}, {0.6, 0, 0.8}, 2.5, real(), real(), 4};
   out.keyframes = {{1.5, camera(), {3, 4}, 0.5, "phong", {{"tablet", 0.5, vector()}}}, {}};
   return out;
@@ -132,10 +136,10 @@ TEST(DocumentFile, RangesAndOtherVersionsAreRefusedByName) {
   EXPECT_NE(refusal([](Document& d) { d.now.rotation = {0, 0, 0, 0}; }).find("now.rotation_wxyz"), std::string::npos);
   EXPECT_NE(refusal([](Document& d) { d.notes[0].at_mm.x = 1e13; }).find("notes[0].at_mm"), std::string::npos);
   std::string text = format_document(rich(7));
-  text.replace(text.find("\"version\": 5"), 12, "\"version\": 6");
+  text.replace(text.find("\"version\": 6"), 12, "\"version\": 7");
   const auto newer = parse_document(text, "k.json");
   ASSERT_FALSE(newer);
-  EXPECT_EQ(newer.error().message, "k.json: version 6 found, expected 1 to 5; a newer dubsar may have written it");
+  EXPECT_EQ(newer.error().message, "k.json: version 7 found, expected 1 to 6; a newer dubsar may have written it");
   EXPECT_FALSE(parse_document("[]", "k.json"));
 }
 

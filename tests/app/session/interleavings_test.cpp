@@ -88,7 +88,7 @@ class Afternoon {
     for (const auto& each : fs::recursive_directory_iterator(folder_.path))
       if (each.is_regular_file() && each.path().filename().string().find(".json") != std::string::npos)
         newer.push_back(each.path());
-    for (const fs::path& file : newer) set_version(file, "99", "5");
+    for (const fs::path& file : newer) set_version(file, "99", "6");
     std::map<std::pair<fs::path, std::size_t>, std::pair<std::set<std::string>, std::set<std::string>>> seen;
     for (const Surface& surface : surfaces_)
       for (std::size_t person = 0; person < kPeople; ++person) {
@@ -217,7 +217,7 @@ class Afternoon {
     for (const auto& each : fs::recursive_directory_iterator(folder_.path))
       if (each.is_regular_file() && each.path().extension() == ".json") files.push_back(each.path());
     std::sort(files.begin(), files.end());
-    if (!files.empty()) set_version(files[pick(files.size())], "5", "99");
+    if (!files.empty()) set_version(files[pick(files.size())], "6", "99");
   }
 
   std::mt19937 random_;
