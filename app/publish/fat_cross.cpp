@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/base/system/budget.h"
+#include "display/render/images/label_text.h"
 #include "display/render/images/render_image.h"
 
 namespace dubsar::app {
@@ -24,6 +25,14 @@ std::size_t index(TabletSide side) { return static_cast<std::size_t>(side); }
 void paste(const Image& part, const CrossPlace& place, Image& whole) {
   for (int y = 0; y < part.height; ++y)
     std::memcpy(whole.at(place.x, place.y + y), part.at(0, y), static_cast<std::size_t>(part.width) * 3);
+}
+
+/// The text of the tablet in letters of 2.5 mm.
+Image text_beside(const FatCrossOptions& options) {
+  if (options.font == nullptr || options.text.empty()) return {};
+  const bool dark = options.ground[0] + options.ground[1] + options.ground[2] < 384;
+  return text_block(*options.font, options.text, std::max(10.0, 2.5 / 25.4 * options.dpi), options.ground,
+                    dark ? Rgb8{255, 255, 255} : Rgb8{0, 0, 0});
 }
 
 /// What one picture of several says of its progress: nothing, for the whole is one stage, but it stops when that is
@@ -107,13 +116,19 @@ Result<FatCross> draw_fat_cross(const TriMesh& mesh, const FatCrossOptions& opti
   }
   progress.end();
   cross.ruler_mm = ruler_length_mm(renderer.box_mm().size().x);
-  const Image ruler = draw_ruler(cross.ruler_mm, options.dpi, options.ground);
+  const Image ruler = draw_ruler(cross.ruler_mm, options.dpi, options.ground, options.font);
   cross.ruler_px = ruler.width;
   const int width = lay_out_cross(extents, {ruler.width, ruler.height}, options.gap_px).width;
   DUBSAR_ASSIGN(const Image legend, draw_sheet_legend(options.shading.style, options.legend, options.dpi,
                                                       width - 2 * options.gap_px, options.ground));
-  const CrossLayout layout =
+  CrossLayout layout =
       lay_out_cross(extents, {ruler.width, ruler.height}, options.gap_px, {legend.width, legend.height});
+  const Image text = text_beside(options);
+  const CrossPlace text_place{layout.width, options.gap_px, false};
+  if (text.width > 0) {
+    layout.width += text.width + options.gap_px;
+    layout.height = std::max(layout.height, text.height + 2 * options.gap_px);
+  }
   DUBSAR_TRY(check_memory("fatcross",
                           static_cast<std::uint64_t>(layout.width) * static_cast<std::uint64_t>(layout.height) * 3));
   cross.whole = Image(layout.width, layout.height, 3);
@@ -138,6 +153,7 @@ Result<FatCross> draw_fat_cross(const TriMesh& mesh, const FatCrossOptions& opti
   }
   paste(ruler, layout.ruler, cross.whole);
   paste(legend, layout.legend, cross.whole);
+  paste(text, text_place, cross.whole);
   return cross;
 }
 

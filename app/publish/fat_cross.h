@@ -4,7 +4,9 @@
 // obverse and again, turned by half, beside the reverse; below them a ruler. One scale for all of it.
 
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/publish/sheet_legend.h"
 #include "core/base/progress.h"
@@ -21,12 +23,14 @@ inline constexpr std::array kTabletSides{TabletSide::kObverse, TabletSide::kReve
                                          TabletSide::kLower,   TabletSide::kLeft,    TabletSide::kRight};
 
 struct FatCrossOptions {
-  double dpi = 600.0;    ///< 50 to 4800
-  Rgb8 ground{0, 0, 0};  ///< of the whole picture
-  int gap_px = 100;      ///< between sides, around the ruler, and at the margin
-  Shading shading{};     ///< its background is not used
-  int samples = 3;       ///< samples x samples a pixel
-  SheetLegend legend{};  ///< below the ruler
+  double dpi = 600.0;               ///< 50 to 4800
+  Rgb8 ground{0, 0, 0};             ///< of the whole picture
+  int gap_px = 100;                 ///< between sides, around the ruler, and at the margin
+  Shading shading{};                ///< its background is not used
+  int samples = 3;                  ///< samples x samples a pixel
+  SheetLegend legend{};             ///< below the ruler
+  LabelFont* font = nullptr;        ///< of the ruler and the text; none: no words
+  std::vector<std::string> text{};  ///< lines at the right of the cross
 };
 
 struct FatCross {
@@ -59,6 +63,7 @@ CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& si
 /// Length of the ruler in mm for a tablet of this width: 10, 20 or 50, the longest that is not longer.
 int ruler_length_mm(double tablet_width_mm);
 /// The ruler with its label ("2 cm"), of exactly round(mm / 25.4 * dpi) pixels length.
-Image draw_ruler(int mm, double dpi, const Rgb8& ground);
+/// No font: without words.
+Image draw_ruler(int mm, double dpi, const Rgb8& ground, LabelFont* font);
 
 }  // namespace dubsar::app

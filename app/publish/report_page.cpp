@@ -98,6 +98,16 @@ std::string provenance(const ReportContent& content) {
          markup_text(dump_json_lines(facts)) + "</pre></details>\n";
 }
 
+/// A table of what somebody kept; nothing where they kept none.
+std::string work_table(const char* heading, const std::vector<ReportRow>& rows) {
+  if (rows.empty()) return {};
+  std::string out = fmt::format("<h2>{}</h2>\n<div class=\"scroll\"><table>\n", heading);
+  for (const ReportRow& row : rows)
+    out += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"dim\">{}</td></tr>\n", markup_text(row.label),
+                       markup_text(row.text), markup_text(row.more));
+  return out + "</table></div>\n";
+}
+
 }  // namespace
 
 std::string base64(const std::string& bytes) {
@@ -128,6 +138,7 @@ std::string report_page(const ReportContent& content) {
     out +=
         "<p class=\"dim\">Here the surface has fewer triangles where it is flat; the pictures below show all of "
         "it.</p>\n";
+  out += work_table("Tablet", content.work.record);
   out += "<h2>Parts</h2>\n" + parts_table(content.facts);
   if (!content.facts.way.sure())
     out += fmt::format("<p>Of the sides below: {}.</p>\n", markup_text(content.facts.way.doubt()));
@@ -137,7 +148,9 @@ std::string report_page(const ReportContent& content) {
     out += fmt::format(
         "<figure><img alt=\"{0}\" src=\"data:image/jpeg;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
         markup_text(picture.caption), base64(picture.jpeg));
-  out += "</div>\n<h2>How it was made</h2>\n" + provenance(content);
+  out += "</div>\n" + work_table("Text", content.work.lines) + work_table("Notes", content.work.notes) +
+         work_table("Measures", content.work.measures);
+  out += "<h2>How it was made</h2>\n" + provenance(content);
   out += fmt::format("<p class=\"dim\">Made by {}.{}</p>\n", markup_text(content.made_by),
                      content.rights.empty() ? "" : " " + markup_text(content.rights));
   out += "<script type=\"application/octet-stream\" id=\"surface\">" + base64(content.glb) + "</script>\n<script>\n";

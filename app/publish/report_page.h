@@ -13,10 +13,20 @@ struct ReportPicture {
   std::string jpeg;  ///< bytes
 };
 
+/// What people kept of the surface, a row each.
+struct ReportRow {
+  std::string label, text, more;  ///< "o. 3", the line, its translation
+};
+struct ReportWork {
+  std::vector<ReportRow> record;  ///< "museum number", "AO 8295"
+  std::vector<ReportRow> lines, notes, measures;
+};
+
 struct ReportContent {
   std::string title;                ///< "AO 8295"
   std::string made_by;              ///< program and version
   std::string institution, rights;  ///< empty: not said
+  ReportWork work;
   SurfaceFacts facts;
   std::vector<ReportPicture> pictures;
   std::string glb;          ///< bytes of a GLB file, its data in the tablet's own axes

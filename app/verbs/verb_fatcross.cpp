@@ -12,6 +12,7 @@
 #include "app/publish/fat_cross.h"
 #include "app/publish/xmp.h"
 #include "app/tools/surface_tools.h"
+#include "app/verbs/kept_work.h"
 #include "app/verbs/told_session.h"
 #include "core/image_io/picture_file.h"
 #include "core/image_io/tiff_file.h"
@@ -23,7 +24,8 @@ namespace fs = std::filesystem;
 
 /// How the sides look: one style or one for each layer, and what was done to it with --do.
 struct SheetLook {
-  std::string style = "phong";
+  std::string style = "raking";
+  bool usual = true;  ///< nobody chose a style: raking light as plates have it
   std::vector<std::string> layers, told;
 };
 
@@ -34,9 +36,18 @@ struct FatCrossRequest {
   int samples = 3;
   Rgb8 ground{0, 0, 0};
   FrameTurn turn = FrameTurn::kNone;
-  bool over = false, no_sides = false, no_legend = false, apart = false;
+  bool over = false, no_sides = false, no_legend = false, apart = false, text = false;
   Publication publication;
 };
+
+/// Of a plate: low light from the upper left, in which hollows keep their light.
+Shading plate_shading(Shading raking) {
+  raking.light.azimuth_deg = 315.0;
+  raking.light.elevation_deg = 25.0;
+  raking.style.ambient_occlusion = true;
+  raking.style.occlusion_power = 0.3;
+  return raking;
+}
 
 constexpr std::array<const char*, kTabletSides.size()> kSideSuffix{"_01", "_02", "_03", "_04", "_05", "_06"};
 
@@ -76,8 +87,8 @@ Result<void> check_besides(const FatCrossRequest& options, const std::vector<std
 class CrossFiles {
  public:
   CrossFiles(const FatCrossRequest& options, const std::vector<std::string>& styles, const TriMesh& upright,
-             Progress& progress)
-      : options_(options), styles_(styles), upright_(upright), progress_(progress) {}
+             std::vector<std::string> text, Progress& progress)
+      : options_(options), styles_(styles), upright_(upright), text_(std::move(text)), progress_(progress) {}
 
   Result<void> write(VerbResult& result) {
     DUBSAR_TRY(find_legend());
@@ -106,8 +117,8 @@ class CrossFiles {
 
  private:
   Result<void> find_legend() {
-    if (options_.no_legend) return {};
     DUBSAR_ASSIGN(font_, LabelFont::create(panel_font()));
+    if (options_.no_legend) return {};
     const EvidenceShares shares = SurfaceEvidence(upright_).of(0xff);
     const double all = shares.measured_mm2 + shares.inferred_mm2;
     legend_ = {font_.get(), shares.inferred_mm2, all > 0 ? shares.inferred_mm2 / all : 0.0, false};
@@ -124,7 +135,10 @@ class CrossFiles {
     draw.samples = options_.samples;
     draw.legend = legend_;
     const std::string& style = styles_[static_cast<std::size_t>(k)];
+    draw.font = font_.get();
+    draw.text = text_;
     DUBSAR_ASSIGN(draw.shading, shading_preset(style));
+    if (options_.look.usual) draw.shading = plate_shading(draw.shading);
     DUBSAR_TRY(dress_as_told(upright_, style, options_.look.told, draw.shading, progress_));
     DUBSAR_ASSIGN(FatCross cross, draw_fat_cross(upright_, draw, progress_));
     if (k == 0) DUBSAR_TRY(write_sides(options_, cross, options_.out));
@@ -145,13 +159,15 @@ class CrossFiles {
   const FatCrossRequest& options_;
   const std::vector<std::string>& styles_;
   const TriMesh& upright_;
+  std::vector<std::string> text_;  ///< of the tablet, beside the cross
   Progress& progress_;
   std::unique_ptr<LabelFont> font_;
   SheetLegend legend_;
   PixelExtent size_, ruler_;  // ruler: mm and pixels
 };
 
-Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
+Result<VerbResult> run(const FatCrossRequest& given, Progress& progress) {
+  FatCrossRequest options = given;
   const std::string suffix = fs::path(options.out).extension().string();
   const bool tiff = suffix == ".tif" || suffix == ".tiff";
   if (!tiff && suffix != ".png")
@@ -178,8 +194,15 @@ Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
   if (options.over) frame = turned(frame, FrameTurn::kOver);
   const TriMesh upright = in_tablet_frame(mesh, frame);
 
+  const Document kept = kept_work(options.in, mesh).value_or(Document());
+  const TabletRecord& record = kept.edition.record;
+  if (options.publication.title.empty()) options.publication.title = name_of(record);
+  if (options.publication.rights.empty()) options.publication.rights = record.rights;
+  if (options.publication.institution.empty()) options.publication.institution = record.institution;
   VerbResult result;
-  DUBSAR_TRY(CrossFiles(options, styles, upright, progress).write(result));
+  const std::vector<std::string> text = options.text ? text_rows(kept) : std::vector<std::string>();
+  if (options.text && text.empty()) result.text += "no lines are kept of this surface, so none stand beside it\n";
+  DUBSAR_TRY(CrossFiles(options, styles, upright, text, progress).write(result));
   result.json["dpi"] = options.dpi;
   result.json["up_probability"] = frame.up_probability;
   result.json["obverse_probability"] = frame.obverse_probability;
@@ -219,7 +242,7 @@ Verb add_fatcross_verb(Arguments program) {
                              {"right", FrameTurn::kRight}},
                             "turn the found orientation in the picture, where the text does not stand upright");
   command.flag("--over", options->over, "the found obverse is the reverse");
-  command.value("--style", options->look.style, "shading, as of render (phong)");
+  command.value("--style", options->look.style, "shading, as of render (raking light from 315,25 with some occlusion)");
   add_do_option(command, options->look.told);
   command.value("--layers", options->look.layers, "several shadings of the same picture, as named pages of one TIFF")
       .separated_by(',');
@@ -229,6 +252,7 @@ Verb add_fatcross_verb(Arguments program) {
       "--no-legend", options->no_legend,
       "without the scale of colours that tell a figure and what the hatch means, which else stand below the ruler");
   command.flag("--no-sides", options->no_sides, "only the cross, not the six sides");
+  command.flag("--text", options->text, "the lines of text that were kept stand beside the cross");
   command.value("--title", options->publication.title, "goes into the file, e.g. \"AO 8295\"");
   command.value("--rights", options->publication.rights, "goes into the file");
   command.value("--institution", options->publication.institution, "goes into the file");
@@ -237,7 +261,11 @@ Verb add_fatcross_verb(Arguments program) {
       "  dubsar fatcross tablet.exa\n"
       "  dubsar fatcross tablet.exa -o ao8295.tif --ground white --title \"AO 8295\" --institution \"Musee du "
       "Louvre\"");
-  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); },
+  return {command,
+          [options, command](const CommonOptions&, Progress& progress) {
+            options->look.usual = !command.given("--style") && !command.given("--layers");
+            return run(*options, progress);
+          },
           [options] {
             if (options->out.empty()) options->out = output_beside(options->in, "_fatcross.tif");
           }};

@@ -13,6 +13,8 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
+#include "app/verbs/figure_options.h"
+#include "app/verbs/kept_work.h"
 #include "app/verbs/look_options.h"
 #include "app/verbs/told_session.h"
 #include "app/viewer/first_document.h"
@@ -42,6 +44,7 @@ struct RenderRequest {
   bool perspective = false, window = false;
   Look look;
   LookOptions shade;
+  FigureOptions figure;
 };
 
 Result<void> read_size(const std::string& text, CameraOptions& camera) {
@@ -166,10 +169,12 @@ ViewOptions session_of(const RenderRequest& options, const SinkSpec& display, co
 Result<void> check_told_picture(const RenderRequest& options) {
   if (options.told.empty()) return {};
   if (options.perspective || options.mm_per_pixel > 0 || options.look.transparent || options.shade.legend ||
-      options.display.pattern || !options.look.cut.empty())
-    return fail(ErrorKind::kUsage,
-                "--do draws what a window shows, expected none of --perspective, --mm-per-pixel, --transparent, "
-                "--legend, --cut (there is a command) and --pattern with it");
+      options.figure.asked() || options.display.pattern || !options.look.cut.empty())
+    return fail(
+        ErrorKind::kUsage,
+        "--do draws what a window shows, expected none of --perspective, --mm-per-pixel, --transparent, "
+        "--legend, --dpi, --width-mm, --ground, --scale-bar, --labels, --cut (there is a command) and --pattern "
+        "with it");
   return check_told(options.told);
 }
 
@@ -245,6 +250,7 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
   render.camera.perspective = options.perspective;
   render.camera.mm_per_pixel = options.mm_per_pixel;
   render.camera.whole = true;
+  DUBSAR_TRY(check_figure(options.figure, render.camera, !options.size.empty(), options.look.transparent));
   if (options.size.empty() && options.mm_per_pixel > 0) render.camera.width = render.camera.height = 0;
   if (options.samples > 0) render.samples = options.samples;
   render.shading.background.transparent = options.look.transparent;
@@ -288,16 +294,22 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
     if (!options.told.empty()) return write_told(options, display, shown, mesh, progress);
     return render_to_display(options.display, display, shown, mesh, options.out, progress);
   }
+  DUBSAR_TRY(apply_figure(options.figure, mesh, render));
   DUBSAR_ASSIGN(Picture picture, render_picture(mesh, render, progress));
   DUBSAR_TRY(add_legend(options.shade, render.shading.style, picture.image));
-  PictureOptions file;
-  file.dpi = picture.dpi();
+  const Document kept = kept_work(options.in, mesh).value_or(Document());
+  const FigureWords words = figure_words(options.in, options.view, kept, upright ? &way : nullptr);
+  DUBSAR_TRY(finish_figure(options.figure, words, render.shading, picture));
+  const PictureOptions file = figure_file(options.figure, picture, kept.edition.record);
   DUBSAR_TRY(write_picture(options.out, picture.image, file));
   VerbResult result;
   result.json = {{"output", options.out},
                  {"width", picture.image.width},
                  {"height", picture.image.height},
                  {"mm_per_pixel", picture.mm_per_pixel},
+                 {"dpi", file.dpi},
+                 {"bar_mm", picture.bar_mm},
+                 {"bar_px", picture.bar_px},
                  {"triangles", mesh.triangles.size()},
                  {"view", options.view},
                  {"upright", upright},
@@ -348,12 +360,14 @@ Verb add_render_verb(Arguments program) {
   command.flag("--perspective", options->perspective, "perspective instead of orthographic");
   command.flag("--transparent", options->look.transparent, "no background");
   command.value("--samples", options->samples, "samples per pixel side (3; of displays 2)").range(1, 8);
+  add_figure_options(command, options->figure);
   add_do_option(command, options->told);
   add_display_options(command, options->display);
   command.footer(
       "Examples:\n"
       "  dubsar render tablet.exa -o tablet.png --partition tablet\n"
       "  dubsar render tablet.exa -o back.tif --view back --light 315,15 --mm-per-pixel 0.0423\n"
+      "  dubsar render tablet.exa -o figure.tif --width-mm 85 --ground white --scale-bar --labels\n"
       "  dubsar render tablet.exa -o lines.png --style raking --light 315,15\n"
       "  dubsar render tablet.exa -o both.png --opacity envelope=0.3\n"
       "  dubsar render tablet.exa -o lifted.png --do \"unpack 100\" --do \"side reverse\"\n"

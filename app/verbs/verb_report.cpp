@@ -9,12 +9,15 @@
 #include "app/cli/default_output.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/document/text_lines.h"
 #include "app/publish/fat_cross.h"
 #include "app/publish/report_page.h"
 #include "app/publish/seen_colors.h"
+#include "app/verbs/kept_work.h"
 #include "app/verbs/told_session.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/files/input_file.h"
+#include "core/edition/line_label.h"
 #include "core/image_io/jpeg_file.h"
 #include "core/mesh/simplify.h"
 #include "core/mesh/tablet_frame.h"
@@ -70,6 +73,28 @@ Result<std::vector<ReportPicture>> pictures_of(const ReportRequest& options, con
   return pictures;
 }
 
+/// Record, lines as they are read, pins and measures of a document.
+ReportWork report_work(const Document& kept) {
+  ReportWork out;
+  const TabletRecord& r = kept.edition.record;
+  const std::array<std::pair<const char*, const std::string*>, 6> said{{{"museum number", &r.museum_number},
+                                                                        {"CDLI", &r.p_number},
+                                                                        {"title", &r.title},
+                                                                        {"kept at", &r.institution},
+                                                                        {"language", &r.language},
+                                                                        {"edition by", &r.creator}}};
+  for (const auto& [name, value] : said)
+    if (!value->empty()) out.record.push_back({name, *value, {}});
+  for (const TextPassage& line : passages_of(kept))
+    out.lines.push_back({(line.spot.object == "tablet" ? "" : line.spot.object + " ") + line_label(line.spot),
+                         line.text, line.translation});
+  for (const Note& note : kept.notes)
+    if (!is_text_line(note) || !spot_of(note)) out.notes.push_back({note.label, note.text, note.part});
+  for (const Measure& measure : kept.measures)
+    out.measures.push_back({measure.name, figures_text(measure), measure.part});
+  return out;
+}
+
 Result<VerbResult> run(const ReportRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const Shading look, shading_preset(options.style));
   DUBSAR_TRY(check_told(options.told));
@@ -77,10 +102,14 @@ Result<VerbResult> run(const ReportRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(TriMesh mesh, load_mesh({options.in, {}, true}, progress));
   ReportContent content;
   DUBSAR_ASSIGN(content.facts, surface_facts(mesh));
-  content.title = options.title.empty() ? fs::path(options.in).stem().string() : options.title;
+  const Document kept = kept_work(options.in, mesh).value_or(Document());
+  const TabletRecord& record = kept.edition.record;
+  content.title = !options.title.empty() ? options.title : name_of(record);
+  if (content.title.empty()) content.title = fs::path(options.in).stem().string();
   content.made_by = "dubsar " DUBSAR_VERSION;
-  content.institution = options.institution;
-  content.rights = options.rights;
+  content.institution = options.institution.empty() ? record.institution : options.institution;
+  content.rights = options.rights.empty() ? record.rights : options.rights;
+  content.work = report_work(kept);
   content.provenance = mesh.provenance;
   TriMesh written = mesh;
   if (mesh.partitions.find(PartitionKind::kTablet) != nullptr) {
@@ -104,6 +133,9 @@ Result<VerbResult> run(const ReportRequest& options, Progress& progress) {
                  {"bytes", page.size()},
                  {"glb_bytes", content.glb.size()},
                  {"triangles", triangles},
+                 {"lines", content.work.lines.size()},
+                 {"notes", content.work.notes.size()},
+                 {"measures", content.work.measures.size()},
                  {"facts", facts_json(content.facts)}};
   result.text = fmt::format("{}: {:.1f} MB, opens in any browser, needs no network\n", options.out,
                             1e-6 * static_cast<double>(page.size()));

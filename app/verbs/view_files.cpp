@@ -9,6 +9,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/document/file_kinds.h"
 #include "app/slices/scan_link.h"
+#include "app/verbs/kept_work.h"
 #include "app/viewer/first_document.h"
 #include "core/base/files/file_fingerprint.h"
 #include "core/base/files/file_suffix.h"
@@ -20,16 +21,6 @@
 
 namespace dubsar::app {
 namespace {
-
-/// What is known of the file that a surface was read from.
-Result<SourceFile> source_of(const std::filesystem::path& file, const TriMesh& mesh) {
-  std::error_code error;
-  SourceFile out{std::filesystem::absolute(file, error).string(), 0};
-  out.bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
-  DUBSAR_ASSIGN(out.content, file_checksum(file));
-  out.scan = scan_fingerprint_of(mesh.provenance);
-  return out;
-}
 
 /// What sessions on this surface left, and where this one keeps its own work.
 void keep_work(SourceFile source, OpenedSurface& out) {
@@ -70,7 +61,7 @@ ReadSurface surface_reader(const ViewOptions& options, const FileReading& readin
     out.work.scan = reading.scan;
     out.work.upright = reading.upright;
     out.title = file.filename().string();
-    DUBSAR_ASSIGN(out.work.document.source, source_of(file, out.mesh));
+    DUBSAR_ASSIGN(out.work.document.source, source_of(file.string(), out.mesh));
     if (reading.keeps_work) keep_work(out.work.document.source, out);
     if (progress.cancelled()) return cancelled_error();
     progress.begin("open", 0, "surface");

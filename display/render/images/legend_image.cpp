@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "display/render/images/utf8.h"
+#include "display/render/images/label_text.h"
 #include "display/render/mesh/surface_field.h"
 
 namespace dubsar {
@@ -18,42 +18,6 @@ void fill(Image& image, double x0, double y0, double x1, double y1, const Rgb8& 
   for (int y = pixel(y0, image.height); y < pixel(y1, image.height); ++y)
     for (int x = pixel(x0, image.width); x < pixel(x1, image.width); ++x)
       std::copy(color.begin(), color.end(), image.at(x, y));
-}
-
-/// Distance from the outline at a place of a letter, 128 on it, as LabelFont::sheet() between its texels.
-double distance_at(const LabelFont& font, const LabelFont::Glyph& glyph, double x, double y) {
-  const auto texel = [&](int tx, int ty) {
-    return static_cast<double>(
-        font.sheet()[static_cast<std::size_t>(glyph.y + std::clamp(ty, 0, glyph.height - 1)) * LabelFont::kSide +
-                     static_cast<std::size_t>(glyph.x + std::clamp(tx, 0, glyph.width - 1))]);
-  };
-  const double left = std::floor(x - 0.5), top = std::floor(y - 0.5), across = x - 0.5 - left, down = y - 0.5 - top;
-  const int tx = static_cast<int>(left), ty = static_cast<int>(top);
-  return std::lerp(std::lerp(texel(tx, ty), texel(tx + 1, ty), across),
-                   std::lerp(texel(tx, ty + 1), texel(tx + 1, ty + 1), across), down);
-}
-
-/// Text whose base line begins at x, y.
-void write(Image& image, LabelFont& font, const std::string& text, double x, double y, int letter_px, const Rgb8& ink) {
-  const double scale = static_cast<double>(letter_px) / LabelFont::kEmPx;
-  for (const unsigned code : code_points(text)) {
-    const LabelFont::Glyph glyph = font.glyph(code);
-    const double left = x + scale * glyph.left, top = y - scale * glyph.top;
-    for (int py = static_cast<int>(top); py <= static_cast<int>(top + scale * glyph.height); ++py)
-      for (int px = static_cast<int>(left); px <= static_cast<int>(left + scale * glyph.width); ++px) {
-        const double gx = (px + 0.5 - left) / scale, gy = (py + 0.5 - top) / scale;
-        if (gx < 0 || gy < 0 || gx >= glyph.width || gy >= glyph.height || px < 0 || py < 0 || px >= image.width ||
-            py >= image.height)
-          continue;
-        const double distance_px = (distance_at(font, glyph, gx, gy) - 128.0) * LabelFont::kSpreadPx / 128.0 * scale;
-        const double cover = std::clamp(distance_px + 0.5, 0.0, 1.0);
-        for (std::size_t c = 0; c < 3; ++c) {
-          std::uint8_t& pixel = image.at(px, py)[c];
-          pixel = static_cast<std::uint8_t>(std::lround((1 - cover) * pixel + cover * ink[c]));
-        }
-      }
-    x += scale * glyph.advance;
-  }
 }
 
 }  // namespace
@@ -76,8 +40,8 @@ Result<Image> legend_image(const Style& style, LabelFont& font, int letter_px, c
             static_cast<int>((2 * kPadEm + 2 * kLineEm + kTallEm + kTickEm) * em), 3);
   fill(out, 0, 0, out.width, out.height, ink.ground);
   const double left = kPadEm * em + side, base = (kPadEm + 0.85) * em, top = (kPadEm + kLineEm) * em;
-  write(out, font, scale.unit.empty() ? std::string(scale.name) : fmt::format("{}, {}", scale.name, scale.unit), left,
-        base, letter_px, ink.letters);
+  write_text(out, font, scale.unit.empty() ? std::string(scale.name) : fmt::format("{}, {}", scale.name, scale.unit),
+             left, base, letter_px, ink.letters);
   const double bar = kBarEm * em, below = top + kTallEm * em;
   for (int x = 0; x < static_cast<int>(bar); ++x) {
     const auto at = static_cast<std::size_t>(std::lround(x / (bar - 1.0) * (kShapeRows - 1)));
@@ -87,8 +51,8 @@ Result<Image> legend_image(const Style& style, LabelFont& font, int letter_px, c
     const double part = tick / (kLegendTicks - 1.0), x = left + part * (bar - 1);
     const std::string number = legend_number(scale.from + part * (scale.to - scale.from));
     fill(out, x, below, x + std::max(1.0, em / 12), below + kTickEm * em, ink.letters);
-    write(out, font, number, x - 0.5 * em * font.width_em(number), below + (kTickEm + 0.9) * em, letter_px,
-          ink.letters);
+    write_text(out, font, number, x - 0.5 * em * font.width_em(number), below + (kTickEm + 0.9) * em, letter_px,
+               ink.letters);
   }
   return out;
 }
@@ -106,8 +70,8 @@ Image evidence_legend(const Style& style, const std::string& figures, LabelFont&
       const bool dark = std::fmod((x + y) / stripe, 2.0) >= 1.0;
       fill(out, x, y, x + 1, y + 1, dark ? style.inferred_stripe : style.inferred_color);
     }
-  write(out, font, words, text, (kPadEm + 0.9) * em, letter_px, ink.letters);
-  write(out, font, figures, text, (kPadEm + kLineEm + 0.9) * em, letter_px, ink.letters);
+  write_text(out, font, words, text, (kPadEm + 0.9) * em, letter_px, ink.letters);
+  write_text(out, font, figures, text, (kPadEm + kLineEm + 0.9) * em, letter_px, ink.letters);
   return out;
 }
 

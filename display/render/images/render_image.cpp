@@ -114,6 +114,9 @@ Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& 
 
   const int side = kTileSamples / options.samples;
   Picture picture{Image(camera.width, camera.height, channels), camera.mm_per_pixel};
+  picture.clip_from_mm = camera.view.clip_from_world();
+  picture.to_viewer =
+      picture_frame(options.camera.object.value_or(object_frame(scene_box_mm(scene))), options.camera.direction).front;
   progress.begin("render", static_cast<std::int64_t>(camera.width) * camera.height, "pixel");
   for (int top = 0; top < camera.height; top += side)
     for (int left = 0; left < camera.width; left += side) {

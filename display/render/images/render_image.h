@@ -1,6 +1,8 @@
 #pragma once
 // One picture of a mesh, without a window: `dubsar render`, the fat-cross.
 
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,8 +23,12 @@ struct RenderOptions {
 };
 
 struct Picture {
-  Image image;                ///< RGB, or RGBA with a transparent background
-  double mm_per_pixel = 0.0;  ///< orthographic: everywhere; perspective: in the plane through the object's centre
+  Image image;                   ///< RGB, or RGBA with a transparent background
+  double mm_per_pixel = 0.0;     ///< orthographic: everywhere; perspective: in the plane through the object's centre
+  glm::dmat4 clip_from_mm{1.0};  ///< where a place of the mesh is seen: -1 to 1, y up
+  glm::dvec3 to_viewer{0.0, 0.0, 1.0};  ///< unit, of an orthographic view
+  double bar_mm = 0.0;                  ///< of a scale bar that somebody drew in it; 0: none
+  int bar_px = 0;
   /// For the dpi tag of a file: 25.4 / mm_per_pixel.
   double dpi() const { return 25.4 / mm_per_pixel; }
 };

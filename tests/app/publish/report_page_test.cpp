@@ -53,6 +53,20 @@ TEST(ReportPage, TextsOfFilesAndPeopleAreTextAndNothingElse) {
   EXPECT_THAT(report_page(broken), HasSubstr("{not json &lt;i&gt;"));
 }
 
+TEST(ReportPage, CarriesTheRecordLinesNotesAndMeasuresThatWereKept) {
+  ReportContent kept = content();
+  EXPECT_THAT(report_page(kept), Not(HasSubstr("<h2>Text</h2>")));
+  kept.work.record = {{"museum number", "AO 8295", ""}};
+  kept.work.lines = {{"o. 1", "a-na <b>", "to"}};
+  kept.work.notes = {{"r. 2", "a crack", ""}};
+  kept.work.measures = {{"head", "0.412 mm deep", "tablet"}};
+  const std::string page = report_page(kept);
+  EXPECT_THAT(page, HasSubstr("<tr><td>museum number</td><td>AO 8295</td>"));
+  EXPECT_THAT(page, HasSubstr("<tr><td>o. 1</td><td>a-na &lt;b&gt;</td><td class=\"dim\">to</td></tr>"));
+  EXPECT_THAT(page, HasSubstr("<td>r. 2</td><td>a crack</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>head</td><td>0.412 mm deep</td>"));
+}
+
 TEST(ReportPage, SaysSizesAndWhatIsNotInTheScan) {
   const std::string page = report_page(content());
   EXPECT_THAT(page, HasSubstr("52.2 × 54.3 × 13.9"));
