@@ -17,12 +17,13 @@ std::vector<std::uint64_t> shape(std::size_t rank) { return std::vector<std::uin
 
 class LibraryReader : public VoxelReader {
  public:
-  LibraryReader(std::shared_ptr<Hdf5File> file, Hdf5Dataset dataset, const std::array<std::size_t, 3>& axes,
-                const ScalarMap& map)
+  /// `type`: what plain numbers are read as, of their own size.
+  LibraryReader(std::shared_ptr<Hdf5File> file, Hdf5Dataset dataset, ScalarType type,
+                const std::array<std::size_t, 3>& axes, const ScalarMap& map)
       : file_(std::move(file)), dataset_(std::move(dataset)), axes_(axes) {
     const Hdf5DatasetInfo& info = dataset_.info();
-    format_ = info.plain_scalar ? NumberFormat{*info.scalar, info.order, map}
-                                : NumberFormat{ScalarType::kF64, kNativeOrder, map};
+    format_ =
+        info.plain_scalar ? NumberFormat{type, info.order, map} : NumberFormat{ScalarType::kF64, kNativeOrder, map};
   }
 
   const NumberFormat& format() const noexcept override { return format_; }
@@ -106,9 +107,9 @@ class LibraryReader : public VoxelReader {
 
 class ChunkReader final : public LibraryReader {
  public:
-  ChunkReader(std::shared_ptr<Hdf5File> file, Hdf5Dataset dataset, const std::array<std::size_t, 3>& axes,
-              const ScalarMap& map)
-      : LibraryReader(std::move(file), std::move(dataset), axes, map) {
+  ChunkReader(std::shared_ptr<Hdf5File> file, Hdf5Dataset dataset, ScalarType type,
+              const std::array<std::size_t, 3>& axes, const ScalarMap& map)
+      : LibraryReader(std::move(file), std::move(dataset), type, axes, map) {
     const auto& info = dataset_.info();
     for (std::size_t i = 0; i < 3; ++i) chunk_[i] = static_cast<std::int64_t>(info.chunk[axes_[i]]);
     for (const Hdf5Filter& filter : info.filters) filters_.push_back(filter.id);
@@ -218,8 +219,8 @@ Result<std::unique_ptr<VoxelReader>> make_hdf5_reader(std::shared_ptr<Hdf5File> 
                                                       const std::array<std::size_t, 3>& axes, const ScalarMap& map) {
   const bool direct = decodes_chunks(info, axes);
   DUBSAR_ASSIGN(Hdf5Dataset dataset, file->open_dataset(info.path, info.layout == Hdf5Layout::kVirtual));
-  if (!direct) return std::make_unique<LibraryReader>(std::move(file), std::move(dataset), axes, map);
-  return std::make_unique<ChunkReader>(std::move(file), std::move(dataset), axes, map);
+  if (!direct) return std::make_unique<LibraryReader>(std::move(file), std::move(dataset), *info.scalar, axes, map);
+  return std::make_unique<ChunkReader>(std::move(file), std::move(dataset), *info.scalar, axes, map);
 }
 
 }  // namespace dubsar

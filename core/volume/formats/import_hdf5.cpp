@@ -197,6 +197,23 @@ Result<std::vector<FlatSegment>> segments_of(const Hdf5Volume& volume, const Imp
   return segments;
 }
 
+/// netCDF 3 has no unsigned numbers: _Unsigned says that signed ones are meant to be (netCDF User's Guide, appendix A).
+void read_as_meant(Hdf5Volume& volume) {
+  std::optional<ScalarType>& scalar = volume.info.scalar;
+  if (!scalar || !volume.info.plain_scalar) return;
+  const auto said = volume.file->string(volume.info.path, "_Unsigned");
+  if (!said || (*said != "true" && *said != "True")) return;
+  for (const auto& [is, meant] : {std::pair{ScalarType::kI8, ScalarType::kU8},
+                                  {ScalarType::kI16, ScalarType::kU16},
+                                  {ScalarType::kI32, ScalarType::kU32},
+                                  {ScalarType::kI64, ScalarType::kU64}})
+    if (*scalar == is) {
+      scalar = meant;
+      volume.info.type_text = std::string(scalar_name(meant));
+      return;
+    }
+}
+
 /// Files besides the one that was asked for: behind a link, of a virtual dataset, or with its numbers.
 std::vector<std::filesystem::path> other_files(const Hdf5Volume& volume, const ImportOptions& options,
                                                std::span<const FlatSegment> segments) {
@@ -228,7 +245,8 @@ std::string layout_text(const Hdf5DatasetInfo& info, const std::array<std::size_
 
 Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
   DUBSAR_ASSIGN(Hdf5File opened_file, Hdf5File::open(options.path));
-  DUBSAR_ASSIGN(const Hdf5Volume volume, find_hdf5_volume(std::make_shared<Hdf5File>(std::move(opened_file)), options));
+  DUBSAR_ASSIGN(Hdf5Volume volume, find_hdf5_volume(std::make_shared<Hdf5File>(std::move(opened_file)), options));
+  read_as_meant(volume);
   const Hdf5DatasetInfo& info = volume.info;
   DUBSAR_TRY(check_shape(info, options.budget));
   DUBSAR_TRY(check_filters(info));

@@ -76,6 +76,32 @@ TEST_F(ImportWorld, ValuesThatAreNoMeasurementAreNaN) {
       EXPECT_EQ(values[static_cast<std::size_t>(i)], 5.0F * static_cast<float>(i) - 3.0F) << i;
 }
 
+TEST_F(ImportWorld, SignedNumbersThatAreMeantUnsignedAreReadAsSuch) {
+  std::vector<double> stored = ramp(24);  // 0 to 23, meant as 65536 - 12 .. 65535, 0 .. 11
+  for (double& value : stored) value -= 12.0;
+  for (const bool chunked : {false, true}) {
+    const std::string name = chunked ? "chunks.nc" : "plain.nc";
+    {
+      Hdf5Fixture file(in(name));
+      if (chunked)
+        file.array("/v", ScalarType::kI16, ByteOrder::kLittle, {2, 3, 4}, stored, {.chunk = {1, 3, 4}});
+      else
+        file.array("/v", ScalarType::kI16, ByteOrder::kLittle, {2, 3, 4}, stored);
+      file.attribute("/v", "_Unsigned", std::string("true"));
+      file.integers("/v", "_FillValue", {-1});
+    }
+    auto opened = open(name);
+    ASSERT_TRUE(opened) << opened.error().message;
+    EXPECT_EQ(opened->info.stored.dtype, "uint16");
+    const auto values = all(*opened);
+    for (int i = 0; i < 24; ++i)
+      if (i == 11)
+        EXPECT_TRUE(std::isnan(values[11]));
+      else
+        EXPECT_EQ(values[static_cast<std::size_t>(i)], static_cast<float>(i < 12 ? 65536 - 12 + i : i - 12)) << i;
+  }
+}
+
 TEST_F(ImportWorld, LimitsAreOfStoredNumbersOrOfWhatTheyMean) {
   const auto nan_count = [&](const char* name, ScalarType type, const auto& say) {
     {
