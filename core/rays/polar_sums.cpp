@@ -25,6 +25,7 @@ double median_in(std::vector<double>& values) {
 
 struct SeenRing {
   double difference, weight;
+  std::int64_t sector;
 };
 
 double weighted_median(std::vector<SeenRing>& seen) {
@@ -37,6 +38,20 @@ double weighted_median(std::vector<SeenRing>& seen) {
     if (2.0 * below == all && i + 1 < seen.size()) return 0.5 * (seen[i].difference + seen[i + 1].difference);
   }
   return seen.back().difference;
+}
+
+/// How far a half of the turn is from all of it, of four halves.
+double worst_half(const std::vector<SeenRing>& seen, double middle) {
+  double worst = 0.0;
+  std::vector<SeenRing> half;
+  for (std::int64_t begin = 0; begin < PolarSlice::kSectors; begin += PolarSlice::kSectors / 4) {
+    half.clear();
+    for (const SeenRing& one : seen)
+      if ((one.sector + PolarSlice::kSectors - begin) % PolarSlice::kSectors < PolarSlice::kSectors / 2)
+        half.push_back(one);
+    if (!half.empty()) worst = std::max(worst, std::abs(weighted_median(half) - middle));
+  }
+  return worst;
 }
 
 /// What a sector has more than around it, NaN where that is not seen.
@@ -101,6 +116,15 @@ void PolarSums::add(const PolarSums& other) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other.sum[i], weight[i] += other.weight[i];
 }
 
+PolarSums PolarSums::half_from(std::int64_t quarter) const {
+  PolarSums half = *this;
+  const std::int64_t begin = quarter * PolarSlice::kSectors / 4;
+  for (const bool clay : {false, true})
+    for (std::int64_t sector = PolarSlice::kSectors / 2; sector < PolarSlice::kSectors; ++sector)
+      for (std::int64_t r = 0; r < radii; ++r) half.weight[at(clay, (begin + sector) % PolarSlice::kSectors, r)] = 0.0;
+  return half;
+}
+
 std::array<AngularConstants, 3> constants_over_angles(const PolarSums& sums) {
   const auto radii = static_cast<std::size_t>(sums.radii);
   std::array<std::vector<std::vector<SeenRing>>, 2> seen;
@@ -110,7 +134,8 @@ std::array<AngularConstants, 3> constants_over_angles(const PolarSums& sums) {
       const std::vector<double> found = sector_differences(sums, clay, sector);
       for (std::size_t r = 0; r < radii; ++r)
         if (!std::isnan(found[r]))
-          seen[clay ? 1 : 0][r].push_back({found[r], sums.weight[sums.at(clay, sector, static_cast<std::int64_t>(r))]});
+          seen[clay ? 1 : 0][r].push_back(
+              {found[r], sums.weight[sums.at(clay, sector, static_cast<std::int64_t>(r))], sector});
     }
   std::array<AngularConstants, 3> out;
   for (AngularConstants& one : out)
@@ -131,9 +156,10 @@ std::array<AngularConstants, 3> constants_over_angles(const PolarSums& sums) {
       weight += one.weight;
       squares += one.weight * (one.difference - to.value[r]) * (one.difference - to.value[r]);
     }
-    to.error[r] = kMedianError * noise / std::sqrt(weight);
-    const double expected = noise * noise * static_cast<double>(values.size());
-    to.uneven[r] = std::sqrt(std::max(0.0, squares - expected) / weight);
+    // Of a voxel's noise, or where sectors differ by more than that, of theirs.
+    to.error[r] = kMedianError *
+                  std::max(noise / std::sqrt(weight), std::sqrt(squares / weight / static_cast<double>(values.size())));
+    to.uneven[r] = worst_half(values, to.value[r]);
   };
   for (std::size_t r = 0; r < radii; ++r) {
     judge(seen[0][r], out[0], r);

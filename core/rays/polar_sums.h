@@ -44,12 +44,14 @@ struct PolarSums {
     return static_cast<std::size_t>(((clay ? PolarSlice::kSectors : 0) + sector) * radii + radius);
   }
   void add(const PolarSums& other);
+  /// Of half a turn, from a quarter of it on.
+  PolarSums half_from(std::int64_t quarter) const;
 };
 
 /// What is the same over all angles, for each whole distance: 0 with an infinite error where too little is seen.
 struct AngularConstants {
   std::vector<double> value, error;  ///< the latter one standard deviation
-  std::vector<double> uneven;        ///< deviation over the sectors beyond that of noise
+  std::vector<double> uneven;        ///< largest difference of one half of the turn
 };
 
 /// Of each sector the difference from the running median of its own material along the radius, then the median over

@@ -81,13 +81,12 @@ PolarSums all_of(const std::vector<PolarSums>& sums) {
   return all;
 }
 
-/// Whether clay and air have the same rings.
+/// Whether clay and air, or two halves of the turn, have the same rings.
 struct Agreement {
   double together = 0.0;  ///< sum of products, in deviations of chance
   double alike = 0.0;
 };
-Agreement agreement(const std::array<AngularConstants, 3>& found) {
-  const AngularConstants &air = found[0], &clay = found[1];
+Agreement agreement(const AngularConstants& air, const AngularConstants& clay) {
   double products = 0.0, chance = 0.0, of_air = 0.0, of_clay = 0.0;
   std::int64_t shared = 0;
   for (std::size_t r = 0; r < air.value.size(); ++r) {
@@ -104,7 +103,19 @@ Agreement agreement(const std::array<AngularConstants, 3>& found) {
 }
 
 Agreement agreement_about(const RingSlices& slices, const Dims& dims, const glm::dvec2& centre) {
-  return agreement(constants_over_angles(all_of(sums_of(PolarSlice(dims, centre), slices))));
+  const auto found = constants_over_angles(all_of(sums_of(PolarSlice(dims, centre), slices)));
+  return agreement(found[0], found[1]);
+}
+
+/// Correlation of opposite halves of the turn, the lesser of two: scans of half a turn have half rings.
+double alike_in_halves(const RingSlices& slices, const Dims& dims, const glm::dvec2& centre) {
+  const PolarSums sums = all_of(sums_of(PolarSlice(dims, centre), slices));
+  double least = 1.0;
+  for (const std::int64_t quarter : {0, 1})
+    least = std::min(least, agreement(constants_over_angles(sums.half_from(quarter))[2],
+                                      constants_over_angles(sums.half_from(quarter + 2))[2])
+                                .alike);
+  return least;
 }
 
 /// The largest value of a parabola through values at -step, 0 and step.
@@ -160,7 +171,7 @@ std::vector<double> standing_out(const AngularConstants& both) {
   std::vector<double> kept(both.value.size());
   for (std::size_t r = 0; r < kept.size(); ++r) {
     const double size = std::abs(both.value[r]);
-    if (size < kRingsErrors * both.error[r] || both.uneven[r] > kRingsMostUneven * size) continue;
+    if (size < kRingsErrors * both.error[r] || both.uneven[r] > kRingsMostUneven * size + both.error[r]) continue;
     kept[r] = both.value[r] * (1.0 - both.error[r] * both.error[r] / (size * size));
   }
   std::vector<double> rings = kept;
@@ -289,9 +300,12 @@ Result<std::optional<RingsLook>> look_for_rings(SlabSource& scan, SlabSource& ha
   double control = 0.0;
   for (const glm::dvec2 way : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
     control = std::max(control, agreement_about(slices, d, centre + kRingsControl * way).together);
-  log_debug("rings about {:.2f} {:.2f}: clay and air agree by {:.1f} deviations, {:.2f} alike; elsewhere by {:.1f}",
-            centre.x, centre.y, here.together, here.alike, control);
-  if (here.together < kRingsLeastAgreement || here.alike < kRingsLeastAlike ||
+  const double halves = alike_in_halves(slices, d, centre);
+  log_debug(
+      "rings about {:.2f} {:.2f}: clay and air agree by {:.1f} deviations, {:.2f} alike, halves {:.2f}; elsewhere by "
+      "{:.1f}",
+      centre.x, centre.y, here.together, here.alike, halves, control);
+  if (halves < kRingsLeastAlike || here.together < kRingsLeastAgreement || here.alike < kRingsLeastAlike ||
       control > std::max(kRingsChance, kRingsMostControl * here.together))
     return std::nullopt;
   return RingsLook{finer_centre(slices, d, middle, centre), std::min(here.alike, 1.0)};

@@ -35,7 +35,8 @@ std::string describe(const RingsLook& look);
 /// What is the same over all angles about an axis along z that stands within two voxels of the middle, in clay and in
 /// air alike: at one distance from the axis the object is clay here and air there, a detector pixel adds the same to
 /// both. Nothing where clay and air do not agree, or where they agree about other centres as well; nothing, then, for a
-/// body of revolution about the axis, which has no distance with both. Within a voxel of half the resolution of a
+/// body of revolution about the axis, which has no distance with both; nothing where halves of the turn differ, as in
+/// scans of half a turn, where a pixel makes half a ring. Within a voxel of half the resolution of a
 /// surface nothing is looked at.
 ///
 /// `half` is the scan after 2:1 (core/filter/resample.h), `levels` of air and clay. Reads eight slices. Memory: 16

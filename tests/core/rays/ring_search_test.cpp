@@ -7,7 +7,9 @@
 #include <random>
 
 #include "core/filter/resample.h"
+#include "core/phantom/density.h"
 #include "core/phantom/phantom_source.h"
+#include "core/phantom/scanner/scan.h"
 #include "core/volume/grid_store.h"
 #include "tests/core/volume/read_all.h"
 
@@ -67,6 +69,35 @@ TEST(RingSearch, RingsOfAScanAreTakenOff) {
                 before / levels.contrast(), after / levels.contrast());
     EXPECT_LT(after, 0.3 * before) << seed;
     EXPECT_FALSE(rings_of(clean, levels)) << seed;
+  }
+}
+
+phantom::ScannedVolume scanned(const std::string& scanner) {
+  phantom::PhantomOptions wanted;
+  wanted.dims = {176, 112, 184};
+  wanted.seed = 4720;
+  const auto object = phantom::Phantom::create(wanted).value();
+  phantom::DensitySource density(*object);
+  SilentProgress progress;
+  return phantom::scan_object(density, object->options().voxel_mm, phantom::parse_scanner(scanner).value(), wanted.seed,
+                              progress)
+      .value();
+}
+
+TEST(RingSearch, HalfRingsStayAndNoScanOfTheScannerBecomesWorse) {
+  for (const std::string turn : {"full", "half"}) {
+    const std::string ideal = "ideal,cone=0,turn=" + turn;
+    const phantom::ScannedVolume clean = scanned(ideal), scan = scanned(ideal + ",rings=0.012");
+    const GreyLevels levels{0.0, clean.clay_per_mm};
+    const auto rings = rings_of(scan.per_mm, levels);
+    EXPECT_FALSE(rings_of(clean.per_mm, levels)) << turn;
+    const double before = apart(scan.per_mm, clean.per_mm) / levels.contrast();
+    const double after = rings ? apart(less_rings(scan.per_mm, *rings), clean.per_mm) / levels.contrast() : before;
+    std::printf("%s turn: %.4f of the contrast before, %.4f after\n", turn.c_str(), before, after);
+    EXPECT_LE(after, before) << turn;
+    if (turn == "half") {
+      EXPECT_FALSE(rings);
+    }
   }
 }
 
