@@ -24,6 +24,14 @@ const ExaRow* ExaTable::find(std::string_view type) const noexcept {
   return nullptr;
 }
 
+std::uint16_t exa_major_of(std::span<const ExaBlock> blocks) {
+  for (const ExaBlock& block : blocks)
+    if (block.type == "LABL" ||
+        (block.type == "HEAD" && block.bytes.find("\"far_sides\":true,\"vertices\":") != std::string::npos))
+      return kExaMajor;
+  return kExaMajorBefore;
+}
+
 std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major, std::uint16_t minor) {
   DUBSAR_CHECK(blocks.size() <= kExaMaxBlocks);
   std::uint64_t offset = head_bytes(blocks.size()), total = offset + kExaEnd.size();

@@ -3,7 +3,8 @@
 // checked against its only legal value or covered by a sum (docs/exa.md, "Container").
 //
 //   magic      8  89 45 58 41 0D 0A 1A 0A ("EXA"; shows damage by text-mode transfers)
-//   major      2  5; readers refuse a major version that they do not know; 3 and 4 are read, too
+//   major      2  6, or 7 where it holds what is new; readers refuse a major version that they do not know; 3 to 5 are
+//                 read, too
 //   minor      2  0; readers skip blocks that they do not know
 //   blocks     4
 //   file bytes 8
@@ -29,7 +30,9 @@ inline constexpr std::string_view kExaMagic(
     "EXA\r\n\x1a\n",
     8);
 inline constexpr std::string_view kExaEnd = "EXA.END\n";
-inline constexpr std::uint16_t kExaMajor = 6, kExaOldest = 3, kExaMinor = 0;
+inline constexpr std::uint16_t kExaMajor = 7, kExaOldest = 3, kExaMinor = 0;
+/// What a file has that holds nothing of version 7.
+inline constexpr std::uint16_t kExaMajorBefore = 6;
 inline constexpr std::size_t kExaPreludeBytes = 24, kExaRowBytes = 28, kExaMaxBlocks = 256;
 inline constexpr std::uint16_t kExaRequired = 1;
 
@@ -56,8 +59,10 @@ struct ExaTable {
 };
 
 /// Head, table and its sum for these blocks.
-std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major = kExaMajor,
-                     std::uint16_t minor = kExaMinor);
+std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major, std::uint16_t minor = kExaMinor);
+/// The version that a reader of these blocks needs: files without anything new stay readable for older programs.
+std::uint16_t exa_major_of(std::span<const ExaBlock> blocks);
+inline std::string exa_head(std::span<const ExaBlock> blocks) { return exa_head(blocks, exa_major_of(blocks)); }
 
 /// Bytes of the head of a file that starts with `prelude` (kExaPreludeBytes of it). kBadData: not an EXA file, another
 /// major version, too many blocks, a file of another size (truncated, appended to).

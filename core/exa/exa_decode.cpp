@@ -151,7 +151,8 @@ Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, co
     const std::vector<std::uint8_t>& lost = damage.offsets;
     DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec, all_but(lost)));
     DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec, all_but(damage.faces)));
-    DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, index, samples, progress));
+    DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, index, samples, progress,
+                              {header.far_sides, header.far_sides, header.far_sides}));
     for (std::size_t i = 0; i < lost.size(); ++i)
       if (lost[i] != 0) put_crossings_half_way(samples, index, i);
     return {};

@@ -98,6 +98,12 @@ std::span<const float> floats_of(const std::vector<glm::vec3>& items) {
   return {reinterpret_cast<const float*>(items.data()), items.size() * 3};
 }
 
+/// Has the grid a last slice that begins where a brick would?
+bool ends_with_a_brick(const Dims& dims) {
+  const auto ends = [](std::int64_t points) { return points > 1 && points % kBrickCells == 1; };
+  return ends(dims.x) || ends(dims.y) || ends(dims.z);
+}
+
 class BlockList {
  public:
   void add(const char* type, bool required, const std::vector<std::string>& chunks) {
@@ -182,6 +188,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   header.isovalue = model.samples.isovalue;
   header.offset_bits = model.samples.offset_bits;
   header.closed = model.samples.closed;
+  header.far_sides = profile == ExaProfile::kCompact && ends_with_a_brick(model.samples.dims);
   header.sums.embedded = model.mesh.embedded;
   header.vertices = model.mesh.vertex_count();
   header.quads = model.mesh.quad_count();

@@ -102,6 +102,7 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
   json["isovalue"] = static_cast<double>(header.isovalue);
   json["offset_bits"] = header.offset_bits;
   json["closed"] = header.closed;
+  if (header.far_sides) json["far_sides"] = true;
   json["vertices"] = header.vertices;
   json["quads"] = header.quads;
   json["edges"] = header.samples.edges;
@@ -153,6 +154,7 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
                   json["cut"].dump());
     header.sums.embedded = true;
   }
+  if (json.is_object() && json.contains("far_sides")) header.far_sides = members.flag("far_sides");
   const glm::dvec3 dims = members.vector("dims");
   header.isovalue = static_cast<float>(members.number("isovalue"));
   const std::int64_t bits = members.count("offset_bits");

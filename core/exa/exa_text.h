@@ -49,6 +49,8 @@ struct ExaHeader {
   bool curvatures = false;  ///< kRecomputed, kQuantised: k_min and k_max follow
   bool shapes = false;      ///< shape_classes() of the curvatures; not stored
   CurvatureMethod curvature = CurvatureMethod::kFit;
+  /// The last brick along an axis of 128 k + 1 points has the offsets and face decisions of its far side.
+  bool far_sides = false;
   std::string tool;  ///< program and version that wrote the file
   MeshSums sums;
 };

@@ -86,7 +86,7 @@ using OffsetNear = std::array<std::array<std::int16_t, 2>, 2>;
 
 /// A row of edges, as far as all of it is known before the first of them is coded.
 struct OffsetRow {
-  static constexpr std::size_t kMost = 128;
+  static constexpr std::size_t kMost = 129;
   std::array<OffsetNetwork::Sums, kMost> sums;
   std::array<OffsetEstimate, kMost> estimates;  ///< of those without an edge before beside them in the row
   std::array<std::uint8_t, kMost> own;          ///< signs of the points that the edges start at

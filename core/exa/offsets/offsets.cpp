@@ -186,14 +186,14 @@ Result<void> choose_offsets(SurfaceSamples& samples, OffsetPrices& prices, Progr
 }
 
 Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
-                            SurfaceSamples& samples, Progress& progress) {
+                            SurfaceSamples& samples, Progress& progress, FarSides far_sides) {
   DUBSAR_TRY(check_signs(samples));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
-  return decode_samples(offsets, faces, index, samples, progress);
+  return decode_samples(offsets, faces, index, samples, progress, far_sides);
 }
 
 Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
-                            const EdgeIndex& index, SurfaceSamples& samples, Progress& progress) {
+                            const EdgeIndex& index, SurfaceSamples& samples, Progress& progress, FarSides far_sides) {
   const Dims grid = brick_grid(samples.dims);
   for (const std::size_t found : {offsets.size(), faces.size()})
     if (found != static_cast<std::size_t>(grid.count()))
@@ -211,7 +211,7 @@ Result<void> decode_samples(std::span<const std::string_view> offsets, std::span
     if (progress.cancelled()) return;
     const auto slot = static_cast<std::size_t>(i);
     if (offsets[slot].empty() && faces[slot].empty()) return;
-    const BrickItems items(samples, index, brick_low(grid, i));
+    const BrickItems items(samples, index, brick_low(grid, i), far_sides);
     if (!offsets[slot].empty()) {
       const auto model = static_cast<unsigned char>(offsets[slot][0]);
       if (model >= kOffsetModels) {

@@ -9,6 +9,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/exa/signs/brick_items.h"
 #include "core/extract/edge_index.h"
 #include "core/extract/surface_samples.h"
 
@@ -23,12 +24,13 @@ Result<SampleCode> encode_samples(const SurfaceSamples& samples, Progress& progr
 
 /// Fills samples.offsets and samples.joined; dims, signs and offset_bits are set. Bricks whose chunks are empty keep
 /// offset 0 and faces that are not joined. kBadData when the number of chunks is wrong or a brick names a model that is
-/// not known; kTryAgain beyond 2^32 - 2 edges or out of memory.
+/// not known; kTryAgain beyond 2^32 - 2 edges or out of memory. `far_sides`: BrickItems.
 Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
-                            SurfaceSamples& samples, Progress& progress);
+                            SurfaceSamples& samples, Progress& progress, FarSides far_sides = kAllFarSides);
 /// The same for who has the index of these signs.
 Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
-                            const EdgeIndex& index, SurfaceSamples& samples, Progress& progress);
+                            const EdgeIndex& index, SurfaceSamples& samples, Progress& progress,
+                            FarSides far_sides = kAllFarSides);
 
 /// Offsets half way of all edges of a brick whose chunk is lost.
 void put_crossings_half_way(SurfaceSamples& samples, const EdgeIndex& index, std::size_t brick);

@@ -25,6 +25,10 @@ class EnvelopeBits {
   void set(std::int64_t x, std::int64_t y, std::int64_t z, bool envelope);
   /// Points [begin, end) of a row are the envelope's.
   void set_run(std::int64_t begin, std::int64_t end, std::int64_t y, std::int64_t z);
+  /// 64 points of a row.
+  void set_word(std::int64_t word, std::int64_t y, std::int64_t z, std::uint64_t bits) {
+    if (this->word(word, y, z) != bits) own_word(word, y, z) = bits;
+  }
   /// Gives tiles back that have clay of one of them only, and clears the bits of air in the others: what says the same
   /// of the clay is then equal, bit by bit.
   void compact(const BitVolume& inside);

@@ -35,8 +35,8 @@ TEST_F(ExaFile, EveryTruncationBitFlipAndExtraByteIsRefused) {
 TEST_F(ExaFile, LaterVersionsAreRefusedOrSkippedAsTheirNumberSays) {
   SurfaceModel model = sample_model({12, 9, 10}, Kind::kBlob, 6);
   std::vector<ExaBlock> blocks = encoded(model);
-  EXPECT_THAT(decode_exa(file_of(blocks, 7), progress_).error().message,
-              HasSubstr("format version 7 found, expected 3 to 6; it needs a later dubsar"));
+  EXPECT_THAT(decode_exa(file_of(blocks, 8), progress_).error().message,
+              HasSubstr("format version 8 found, expected 3 to 7; it needs a later dubsar"));
   EXPECT_THAT(decode_exa(file_of(blocks, 2), progress_).error().message, HasSubstr("process the scan again"));
   blocks.push_back({"NEW1", 99, 0, 1, join_chunks(std::vector<std::string>{"whatever"})});
   const auto later = decode_exa(file_of(blocks, kExaMajor, 7), progress_);

@@ -12,6 +12,16 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
+TEST_F(ExaFile, OfAGridThatEndsWhereABrickDoesAreReadBack) {
+  for (const Dims& dims : {Dims{129, 9, 8}, Dims{9, 129, 8}, Dims{9, 8, 129}, Dims{257, 9, 129}, Dims{385, 4, 4}})
+    for (const int bits : {4, 9}) {
+      const SurfaceModel model = sample_model(dims, Kind::kNoise, 3, true, bits);
+      const auto read = decode_exa(file_of(encoded(model)), progress_);
+      ASSERT_TRUE(read) << dims.x << " x " << dims.y << " x " << dims.z << ": " << read.error().message;
+      expect_equal(model, *read);
+    }
+}
+
 TEST_F(ExaFile, ModelReadBackEqualsTheModelWritten) {
   const Dims shapes[] = {{1, 1, 1}, {30, 1, 17}, {33, 20, 41}, {65, 3, 2}};
   unsigned seed = 0;

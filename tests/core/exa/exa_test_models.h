@@ -114,12 +114,13 @@ inline void expect_equal(const SurfaceModel& a, const SurfaceModel& b) {
   EXPECT_EQ(a.provenance, b.provenance);
 }
 
-inline std::string file_of(const std::vector<ExaBlock>& blocks, std::uint16_t major = kExaMajor,
-                           std::uint16_t minor = kExaMinor) {
+inline std::string file_of(const std::vector<ExaBlock>& blocks, std::uint16_t major, std::uint16_t minor = kExaMinor) {
   std::string bytes = exa_head(blocks, major, minor);
   for (const ExaBlock& block : blocks) bytes += block.bytes;
   return bytes + std::string(kExaEnd);
 }
+
+inline std::string file_of(const std::vector<ExaBlock>& blocks) { return file_of(blocks, exa_major_of(blocks)); }
 
 inline std::vector<ExaBlock> encoded(const SurfaceModel& model, ExaProfile profile = ExaProfile::kCompact) {
   SilentProgress progress;
