@@ -141,10 +141,12 @@ Result<VerbResult> recompress(const ExaRequest& options, Progress& progress) {
   settle.max_error = options.max_error;
   settle.curvature = before.header.curvature;
   settle.exact_normals = before.header.normals == ExaNormals::kExact;  // somebody asked for them
-  DUBSAR_ASSIGN(const SettleStats stats, options.profile == ExaProfile::kPaper
-                                             ? settle_for_paper(model, settle, progress)
-                                             : settle_for_exa(model, settle, progress));
-  settle_patches(model.patches, model.mesh.vertex_count());
+  SettleStats stats;
+  if (!model.labelled) {  // else it was settled when its parts were made
+    DUBSAR_ASSIGN(stats, options.profile == ExaProfile::kPaper ? settle_for_paper(model, settle, progress)
+                                                               : settle_for_exa(model, settle, progress));
+    settle_patches(model.patches, model.mesh.vertex_count());
+  }
   DUBSAR_ASSIGN(const ExaStats after, write_exa(options.out, model, progress, options.profile));
   VerbResult result;
   result.text = fmt::format(

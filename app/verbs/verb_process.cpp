@@ -115,7 +115,7 @@ void add_surface_options(Arguments command, ProcessRequest& options) {
   group.choice<ContactMesh>(
       "--contact", options.contact.mesh, choices_of(kContactMeshes),
       "how parts are closed where they touch: patches (default), or labels, one mesh of all parts: "
-      "a trial that writes PLY");
+      "a trial");
   group.writes("--parts", options.contact.parts, FileFormat::kMesh,
                "mesh (PLY, STL, OBJ, GLB or 3MF) that is written in place of the EXA file, with --contact labels");
   group.flag("--no-ao", options.without.ao, "skip ambient occlusion");
@@ -191,11 +191,10 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
   const bool labels = options.contact.mesh == ContactMesh::kLabels;
   p.contact = options.contact.mesh;
   if (options.without.contact) p.contact.reset();
-  if (labels == options.contact.parts.empty())
-    return fail(ErrorKind::kUsage, "{}",
-                labels ? "--contact labels makes a surface that EXA files do not hold yet: give --parts FILE.ply, too"
-                       : "--parts is for --contact labels; else make the EXA file and take dubsar export");
-  if (labels) DUBSAR_TRY(mesh_format_from_path(options.contact.parts));
+  const bool parts = !options.contact.parts.empty();
+  if (parts && !labels)
+    return fail(ErrorKind::kUsage, "--parts is for --contact labels; else make the EXA file and take dubsar export");
+  if (parts) DUBSAR_TRY(mesh_format_from_path(options.contact.parts));
   p.sample.closed = !options.without.cap;
   p.fill_holes = !options.without.holes;
   if (options.without.ao)
@@ -212,9 +211,9 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
         "; allow more with --memory, take --detail half where it is not taken yet, a part of the scan with --crop, or "
         "fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
-  if (labels) {
-    DUBSAR_ASSIGN(const TriMesh parts, make_tri_mesh(result.model));
-    DUBSAR_TRY(write_mesh(options.contact.parts, parts, {}, progress));
+  if (parts) {
+    DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
+    DUBSAR_TRY(write_mesh(options.contact.parts, mesh, {}, progress));
     options.out = options.contact.parts;
   } else {
     DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));

@@ -36,6 +36,12 @@ inline constexpr std::uint16_t kExaMajorBefore = 6;
 inline constexpr std::size_t kExaPreludeBytes = 24, kExaRowBytes = 28, kExaMaxBlocks = 256;
 inline constexpr std::uint16_t kExaRequired = 1;
 
+/// What a version of the format brought that readers must ask for.
+enum class ExaFeature : std::uint16_t {
+  kLateBricks = 5,  ///< bricks of signs that know those beside them
+  kLabels = 7,      ///< parts that touch, and far sides of grids that end where a brick does
+};
+
 struct ExaBlock {
   std::string type;  ///< four characters
   std::uint16_t codec = 0, flags = 0;
@@ -54,6 +60,7 @@ struct ExaTable {
   std::uint16_t major = 0, minor = 0;
   std::uint64_t file_bytes = 0;
   std::vector<ExaRow> rows;
+  bool has(ExaFeature feature) const noexcept { return major >= static_cast<std::uint16_t>(feature); }
   /// The first row of this type, or nullptr.
   const ExaRow* find(std::string_view type) const noexcept;
 };

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "core/base/system/budget.h"
 #include "core/exa/exa_blocks.h"
+#include "core/exa/labels/labelled_code.h"
 #include "core/exa/offsets/offsets.h"
 #include "core/exa/offsets/settle.h"
 #include "core/exa/paper/paper_profile.h"
@@ -18,6 +20,7 @@
 #include "core/exa/values/exact.h"
 #include "core/extract/extract.h"
 #include "core/mesh/evidence.h"
+#include "core/parts/labelled_model.h"
 #include "core/relief/curvature/shape_class.h"
 
 namespace dubsar {
@@ -120,12 +123,14 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
     DUBSAR_ASSIGN(model.partitions, parse_exa_partitions(text));
   }
   if (reader.has("FILL")) {
-    DUBSAR_ASSIGN(const ExaChunks patches, reader.chunks("FILL", kCodec));
-    DUBSAR_ASSIGN(model.patches, decode_patches(patches.chunks, {model.mesh, model.quad_partition}));
+    DUBSAR_ASSIGN(const ExaChunks chunks, reader.chunks("FILL", kCodec));
+    DUBSAR_ASSIGN(std::vector<FillPatch> patches, decode_patches(chunks.chunks, {model.mesh, model.quad_partition}));
     if (reader.has("FEVI")) {
       DUBSAR_ASSIGN(const ExaChunks evidence, reader.chunks("FEVI", kCodec));
-      DUBSAR_TRY(decode_patch_evidence(evidence.chunks, model.patches));
+      DUBSAR_TRY(decode_patch_evidence(evidence.chunks, patches));
     }
+    model.patches.insert(model.patches.end(), std::make_move_iterator(patches.begin()),  // behind the contact, if any
+                         std::make_move_iterator(patches.end()));
   }
   if (reader.has("PROV")) {
     DUBSAR_ASSIGN(model.provenance, reader.text("PROV"));
@@ -171,7 +176,7 @@ Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, co
 
 Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::function<bool(std::size_t)>& wanted) {
   LoadedSigns loaded;
-  loaded.chunks.apart = reader.table().major < 5;
+  loaded.chunks.late_bricks = reader.table().has(ExaFeature::kLateBricks);
   DUBSAR_ASSIGN(ExaChunks coarse, reader.chunks("SIGC", kCodec));
   loaded.chunks.coarse = coarse.chunks;
   loaded.blocks.push_back(std::move(coarse));
@@ -227,21 +232,29 @@ Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions&
     return fail(ErrorKind::kBadData, "exa: {} active edges and {} ambiguous faces found, the header says {} and {}",
                 counts.edges, counts.faces, header.samples.edges, header.samples.faces);
   DUBSAR_TRY(decode_offsets(reader, header, *index, samples, progress, damage ? *damage : ExaDamage()));
-  DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, *index, progress));
-  model.mesh.embedded = header.sums.embedded;
+  std::optional<LabelledMesh> labelled;
+  if (header.contact && (damage == nullptr || reader.has("LABL"))) {
+    DUBSAR_ASSIGN(labelled, decode_labelled(reader, header, *index, damage == nullptr, model, progress));
+  } else {
+    DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, *index, progress));
+    model.mesh.embedded = header.sums.embedded;
+    if (header.contact)
+      return bare(std::move(model), header, progress);  // its vertices are not those that were written
+  }
   index.reset();
   if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads) {
     if (damage != nullptr) return bare(std::move(model), header, progress);
     return fail(ErrorKind::kBadData, "exa: {} vertices and {} x-quads found, the header says {} and {}",
                 model.mesh.vertex_count(), model.mesh.quad_count(), header.vertices, header.quads);
   }
-  DUBSAR_TRY(decode_positions(reader, model, progress));
+  if (!labelled) DUBSAR_TRY(decode_positions(reader, model, progress));
   if (damage == nullptr &&
       (position_sum_of(model) != header.sums.positions || quad_sum_of(model.mesh) != header.sums.quads))
     return fail(ErrorKind::kBadData, "exa: the mesh built from this file is not the one that was written");
   if (options.recompute || header.normals != ExaNormals::kRecomputed)
     DUBSAR_TRY(decode_normals(reader, header, model, progress));
   DUBSAR_TRY(decode_attributes(reader, header, model, progress));
+  if (labelled) draw_labelled_mesh(model, std::move(*labelled));
   DUBSAR_ASSIGN(model.foreign, reader.foreign());
   return model;
 }

@@ -5,6 +5,7 @@
 #include "core/exa/chunks.h"
 #include "core/exa/exa_blocks.h"
 #include "core/exa/exa_file.h"
+#include "core/exa/labels/labelled_code.h"
 #include "core/exa/offsets/offsets.h"
 #include "core/exa/offsets/settle.h"
 #include "core/exa/paper/paper_profile.h"
@@ -172,16 +173,25 @@ void add_labels(const SurfaceModel& model, const ExaHeader& header, BlockList& b
 }  // namespace
 
 Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress, ExaProfile profile) {
-  if (model.drawing)
+  if (model.labelled && profile == ExaProfile::kPaper)
     return fail(ErrorKind::kUsage,
-                "exa: a surface of labelled points was found, which EXA files do not hold yet; write it as PLY or STL");
-  BlockList positions;
-  {
+                "exa: the paper's profile does not hold parts that touch; write the file without --exa-profile paper");
+  BlockList positions, labelled;
+  ExaHeader header;
+  if (model.labelled) {
+    DUBSAR_ASSIGN(const LabelledCode code, encode_labelled(model, progress));
+    DUBSAR_TRY(check_model(model, code.rebuilt));
+    labelled.add("LABL", true, code.labels);
+    labelled.add("LOFS", true, code.offsets);
+    labelled.add("LEVI", true, code.evidence);
+    if (!code.escapes.empty()) positions.add("ESCP", true, code.escapes);
+    if (!code.exact.empty()) positions.add("POSN", true, code.exact);
+    header.contact = code.counts;
+  } else {
     DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
     DUBSAR_TRY(check_model(model, base));
     add_positions(model, base, profile, positions, progress);
   }
-  ExaHeader header;
   header.profile = profile;
   header.frame = model.frame;
   header.dims = model.samples.dims;
@@ -211,6 +221,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   }
   if (!model.provenance.empty()) blocks.add("PROV", false, {model.provenance});
   DUBSAR_TRY(add_samples(model.samples, profile, blocks, progress));
+  blocks.add(std::move(labelled));
   blocks.add(std::move(positions));
   if (header.normals == ExaNormals::kQuantised) blocks.add("PNRM", false, *encode_paper_normals(a.normals, progress));
   if (header.normals == ExaNormals::kExact) {
@@ -226,9 +237,11 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   }
   add_labels(model, header, blocks, progress);
   if (!a.evidence.empty()) blocks.add("EVID", false, encode_labels(ExaLabel::kEnum, model.mesh, a.evidence, progress));
-  if (!model.patches.empty())
-    blocks.add("FILL", false, encode_patches(model.patches, {model.mesh, model.quad_partition}));
-  if (has_patch_evidence(model.patches)) blocks.add("FEVI", false, encode_patch_evidence(model.patches));
+  std::vector<FillPatch> contactless;  // of a surface of labels the first patch is the contact, which follows from them
+  if (model.labelled) contactless.assign(model.patches.begin() + 1, model.patches.end());
+  const std::vector<FillPatch>& patches = model.labelled ? contactless : model.patches;
+  if (!patches.empty()) blocks.add("FILL", false, encode_patches(patches, {model.mesh, model.quad_partition}));
+  if (has_patch_evidence(patches)) blocks.add("FEVI", false, encode_patch_evidence(patches));
   std::vector<ExaBlock> all = blocks.take();
   for (const ForeignBlock& block : model.foreign)
     all.push_back({block.type, block.codec, block.flags, block.chunks, block.bytes});

@@ -74,7 +74,7 @@ Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Pro
     closed.low[a] = low[a] + 1;  // inside, so that bricks that only touch a side stay out
     closed.high[a] = std::max(low[a], low[a] + points[a] - 2);
   }
-  const std::vector<std::uint8_t> needed = bricks_of_box(dims, closed, reader.table().major < 5);
+  const std::vector<std::uint8_t> needed = bricks_of_box(dims, closed, reader.table().has(ExaFeature::kLateBricks));
   DUBSAR_ASSIGN(const LoadedSigns loaded,
                 load_signs(reader, 0, [&](std::size_t i) { return i < needed.size() && needed[i] != 0; }));
   DUBSAR_ASSIGN(const BitVolume whole,

@@ -5,7 +5,9 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/exa/labels/labelled_code.h"
 #include "core/extract/extract.h"
+#include "core/parts/labelled_model.h"
 
 namespace dubsar {
 namespace {
@@ -21,15 +23,15 @@ constexpr float kMostCurvature = 1000.0F;
 /// Millimetres: atoms, and more than a room.
 constexpr double kLeastVoxel = 1e-7, kMostVoxel = 1e4, kFarthestOrigin = 1e7;
 
-Result<void> check_places(const SurfaceModel& model, const QuadMesh& base) {
+Result<void> check_places(const SurfaceModel& model, const std::vector<glm::vec3>& places, const QuadMesh& base) {
   const Dims& d = model.samples.dims;
   const glm::vec3 low(-kPlausibleMargin),
       high(glm::vec3(static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)) + kPlausibleMargin);
   const auto inside = [&](const glm::vec3& p) {
     return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
   };
-  for (std::size_t v = 0; v < model.mesh.positions.size(); ++v)
-    if (const float moved = glm::length(model.mesh.positions[v] - base.positions[v]); !(moved <= kMostMove))
+  for (std::size_t v = 0; v < places.size(); ++v)
+    if (const float moved = glm::length(places[v] - base.positions[v]); !(moved <= kMostMove))
       return fail(ErrorKind::kBadData, "exa: vertex {} lies {:g} grid steps from its crossings, expected at most {}", v,
                   moved, kMostMove);
   for (std::size_t i = 0; i < model.patches.size(); ++i) {
@@ -78,8 +80,13 @@ Result<void> check_plausible(const SurfaceModel& model, const ExaHeader& header,
     return fail(ErrorKind::kBadData, "exa: block \"provenance\" is no JSON");
   DUBSAR_TRY(check_frame(model.frame));
   DUBSAR_TRY(check_attributes(model.attributes));
-  DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
-  return check_places(model, base);
+  if (!model.labelled) {
+    DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
+    return check_places(model, model.mesh.positions, base);
+  }
+  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
+  DUBSAR_ASSIGN(const LabelledMesh base, labelled_base(model, index, progress));
+  return check_places(model, labelled_places(model, base), base.mesh);
 }
 
 }  // namespace dubsar

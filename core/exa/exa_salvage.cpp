@@ -16,16 +16,26 @@ namespace dubsar {
 namespace {
 
 /// Blocks that cannot be understood without another one.
-constexpr std::array<std::array<const char*, 2>, 7> kHangOn{{{"PART", "QPAR"},  // who is what, and where
-                                                             {"QPAR", "PART"},
-                                                             {"QPAR", "FILL"},
-                                                             {"PART", "FILL"},
-                                                             {"FILL", "FEVI"},
-                                                             {"NORM", "CURV"},
-                                                             {"PATT", "PQEX"}}};
+constexpr std::array<std::array<const char*, 2>, 12> kHangOn{{{"PART", "QPAR"},  // who is what, and where
+                                                              {"QPAR", "PART"},
+                                                              {"QPAR", "FILL"},
+                                                              {"PART", "FILL"},
+                                                              {"FILL", "FEVI"},
+                                                              {"NORM", "CURV"},
+                                                              {"PATT", "PQEX"},
+                                                              {"PART", "LABL"},
+                                                              {"LABL", "LOFS"},
+                                                              {"LOFS", "LABL"},
+                                                              {"LABL", "LEVI"},
+                                                              {"LABL", "ESCP"}}};
 
 bool by_bricks(const std::string& type) {
   return type == "SIG0" || type == "SIG1" || type == "SIG2" || type == "OFFS" || type == "FACE";
+}
+
+/// Of the blocks that a reader must know: what of the surface is left without them follows from the others.
+bool can_be_left_out(const std::string& type) {
+  return type == "ESCP" || type == "POSN" || type == "LABL" || type == "LOFS" || type == "LEVI";
 }
 
 void add_lost(std::vector<std::uint8_t>& lost, const std::vector<std::uint8_t>& more) {
@@ -75,7 +85,7 @@ Result<FoundDamage> find_damage(const ExaReader& reader, const ExaHeader& header
     if (chunks && std::count(chunks->begin(), chunks->end(), 1) == 0) continue;
     const std::string name = exa_block_name(row.type);
     if (!by_bricks(row.type)) {
-      found.needed |= (row.flags & kExaRequired) != 0 && row.type != "ESCP" && row.type != "POSN";
+      found.needed |= (row.flags & kExaRequired) != 0 && !can_be_left_out(row.type);
       found.dropped.insert(row.type);
       found.lost.push_back(fmt::format("block \"{}\"", name));
       continue;
@@ -89,6 +99,9 @@ Result<FoundDamage> find_damage(const ExaReader& reader, const ExaHeader& header
     for (std::size_t i = 0; i < std::min(all.size(), bricks); ++i)
       if (all[i] != 0) found.lost.push_back(brick_text(header.dims, i, name.c_str()));
   }
+  if (reader.has("LABL") && !(found.bricks.signs.empty() && found.bricks.faces.empty()) &&
+      found.dropped.insert("LABL").second)
+    found.lost.push_back("block \"labels\", which belongs to other signs");
   for (bool more = true; more;) {
     more = false;
     for (const auto& [lost, hangs] : kHangOn)
@@ -108,12 +121,12 @@ Result<SalvagedExa> decode_salvaged(const ExaReader& reader, Progress& progress)
   DUBSAR_ASSIGN(FoundDamage found, find_damage(reader, header));
   if (found.needed || (header.profile == ExaProfile::kPaper && !found.bricks.signs.empty()))
     return fail(ErrorKind::kBadData, "exa: nothing can be saved without {}", found.lost.front());
-  const bool places = found.dropped.contains("ESCP") || found.dropped.contains("POSN");
+  const bool places = std::any_of(found.dropped.begin(), found.dropped.end(), can_be_left_out);
   ExaDamage& bricks = found.bricks;
   const bool damaged = places || !bricks.signs.empty() || !bricks.offsets.empty() || !bricks.faces.empty();
   if (!bricks.signs.empty()) {
     const std::vector<std::uint8_t> before = bricks.signs;
-    bricks.signs = lost_with(header.dims, std::move(bricks.signs), reader.table().major < 5);
+    bricks.signs = lost_with(header.dims, std::move(bricks.signs), reader.table().has(ExaFeature::kLateBricks));
     for (std::size_t i = 0; i < before.size(); ++i)
       if (bricks.signs[i] != before[i])
         found.lost.push_back(brick_text(header.dims, i, "signs, coded by those beside it,"));

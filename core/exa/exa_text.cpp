@@ -109,6 +109,9 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
   json["faces"] = header.samples.faces;
   json["position_sum"] = header.sums.positions;
   json["quad_sum"] = header.sums.quads;
+  if (header.contact)
+    json["contact"] = {
+        {"edges", header.contact->edges}, {"vertices", header.contact->vertices}, {"sum", header.contact->sum}};
   json["normals"] = normals_name(header.normals);
   json["curvatures"] = header.curvatures;
   json["shapes"] = header.shapes ? "recomputed" : "stored";
@@ -155,6 +158,13 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
     header.sums.embedded = true;
   }
   if (json.is_object() && json.contains("far_sides")) header.far_sides = members.flag("far_sides");
+  if (json.is_object() && json.contains("contact")) {
+    Members contact(json["contact"]);
+    header.contact =
+        ExaContact{contact.count("edges"), contact.count("vertices"), static_cast<std::uint32_t>(contact.count("sum"))};
+    if (!contact.wrong().empty())
+      return fail(ErrorKind::kBadData, "exa: \"{}\" of \"contact\" is missing or wrong in the header", contact.wrong());
+  }
   const glm::dvec3 dims = members.vector("dims");
   header.isovalue = static_cast<float>(members.number("isovalue"));
   const std::int64_t bits = members.count("offset_bits");
@@ -191,7 +201,9 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   if (bits >= 4 && edges > kAlwaysItems + kMostEdgesPerByte * file_bytes)
     return fail(ErrorKind::kBadData, "exa: {} edges in a file of {} bytes, expected at most {}", edges, file_bytes,
                 kAlwaysItems + kMostEdgesPerByte * file_bytes);
-  for (const std::int64_t count : {header.vertices, header.quads, header.samples.edges, header.samples.faces})
+  const ExaContact contact = header.contact.value_or(ExaContact());
+  for (const std::int64_t count :
+       {header.vertices, header.quads, header.samples.edges, header.samples.faces, contact.edges, contact.vertices})
     if (static_cast<std::uint64_t>(count) > kAlwaysItems + kMostPerByte * file_bytes)
       return fail(ErrorKind::kBadData,
                   "exa: {} vertices, x-quads, edges or faces in a file of {} bytes, expected at most {}", count,
@@ -223,7 +235,10 @@ std::uint64_t exa_memory_bound(const ExaHeader& header) {
   const auto items =
       static_cast<std::uint64_t>(header.vertices + header.quads + header.samples.edges + header.samples.faces);
   const std::uint64_t lattices = header.profile == ExaProfile::kPaper ? paper_sign_memory(header.dims) : 0;
-  return words * 9 + rows * 48 + items * 80 + lattices + (std::uint64_t{64} << 20);
+  const ExaContact contact = header.contact.value_or(ExaContact());
+  const std::uint64_t labelled =
+      header.contact ? words * 17 + items * 60 + static_cast<std::uint64_t>(contact.edges + contact.vertices) * 400 : 0;
+  return words * 9 + rows * 48 + items * 80 + labelled + lattices + (std::uint64_t{64} << 20);
 }
 
 Result<std::string> exa_partitions_json(const PartitionTable& partitions) {

@@ -1,6 +1,7 @@
 #pragma once
 // The text blocks of an EXA file: the JSON header and the partition table.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,13 @@ struct MeshSums {
   bool embedded = false;  ///< as QuadMesh::embedded says
 };
 
+/// Of a surface of parts that touch (labelled_surface.h).
+struct ExaContact {
+  std::int64_t edges = 0;     ///< of the grid, between clay of both
+  std::int64_t vertices = 0;  ///< that are not at the air
+  std::uint32_t sum = 0;      ///< over their places, the offsets of the edges, and how the vertices are known
+};
+
 struct ExaHeader {
   ExaProfile profile = ExaProfile::kCompact;
   GridFrame frame;
@@ -51,6 +59,7 @@ struct ExaHeader {
   CurvatureMethod curvature = CurvatureMethod::kFit;
   /// The last brick along an axis of 128 k + 1 points has the offsets and face decisions of its far side.
   bool far_sides = false;
+  std::optional<ExaContact> contact;
   std::string tool;  ///< program and version that wrote the file
   MeshSums sums;
 };

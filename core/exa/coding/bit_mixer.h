@@ -52,7 +52,7 @@ class BitMixer {
 
  private:
   static constexpr std::int32_t kFirstWeight = 65536 * 2 / 5;  // a little more than the mean of the six of labels
-  static constexpr int kMixRate = 7;                             // Mahoney's
+  static constexpr int kMixRate = 7;                           // Mahoney's
   static constexpr std::uint32_t kLeastMixed = 32;
   std::array<std::array<std::int32_t, Inputs>, Sets> weights_;
   std::array<std::int32_t, Inputs>* now_ = &weights_[0];

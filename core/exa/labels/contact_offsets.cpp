@@ -36,9 +36,12 @@ SurfaceSamples tablet_of(const KnownContact& contact) {
 /// 1 for each brick in which an edge of the contact begins.
 std::vector<std::uint8_t> bricks_with_contact(const KnownContact& contact, const Dims& grid) {
   std::vector<std::uint8_t> found(static_cast<std::size_t>(grid.count()), 0);
-  const auto brick = [](std::int32_t at, std::int64_t bricks) { return std::min<std::int64_t>(at / kBrickCells, bricks - 1); };
+  const auto brick = [](std::int32_t at, std::int64_t bricks) {
+    return std::min<std::int64_t>(at / kBrickCells, bricks - 1);
+  };
   for (const GridEdge& e : contact.edges.all())
-    found[static_cast<std::size_t>((brick(e.z, grid.z) * grid.y + brick(e.y, grid.y)) * grid.x + brick(e.x, grid.x))] = 1;
+    found[static_cast<std::size_t>((brick(e.z, grid.z) * grid.y + brick(e.y, grid.y)) * grid.x + brick(e.x, grid.x))] =
+        1;
   return found;
 }
 
@@ -49,18 +52,17 @@ void walk_contact(const KnownContact& contact, const BrickItems& items, const st
   OffsetWindow window(items.signs());
   OffsetRows rows(OffsetModel::instance(model), window);
   const BitVolume& clay = contact.samples.signs;
-  items.edges([&](int z) { window.begin_slice(z); },
-              [&](int axis, int y, int z, std::span<const std::uint8_t> xs, std::uint32_t) {
-                rows.row(axis, y, z, xs, [&](std::size_t i, const OffsetEstimate& estimate) {
-                  const std::int64_t gx = low[0] + xs[i], gy = low[1] + y, gz = low[2] + z;
-                  const bool touches =
-                      clay.get(gx, gy, gz) && clay.get(gx + (axis == 0), gy + (axis == 1), gz + (axis == 2));
-                  const std::uint32_t offset =
-                      touches ? code(contact.edges.number(axis, gx, gy, gz), estimate)
-                              : contact.samples.offsets[contact.index.quad_of(axis, gx, gy, gz)];
-                  return static_cast<int>((2 * offset + 1) << 5 >> contact.samples.offset_bits);
-                });
-              });
+  items.edges(
+      [&](int z) { window.begin_slice(z); },
+      [&](int axis, int y, int z, std::span<const std::uint8_t> xs, std::uint32_t) {
+        rows.row(axis, y, z, xs, [&](std::size_t i, const OffsetEstimate& estimate) {
+          const std::int64_t gx = low[0] + xs[i], gy = low[1] + y, gz = low[2] + z;
+          const bool touches = clay.get(gx, gy, gz) && clay.get(gx + (axis == 0), gy + (axis == 1), gz + (axis == 2));
+          const std::uint32_t offset = touches ? code(contact.edges.number(axis, gx, gy, gz), estimate)
+                                               : contact.samples.offsets[contact.index.quad_of(axis, gx, gy, gz)];
+          return static_cast<int>((2 * offset + 1) << 5 >> contact.samples.offset_bits);
+        });
+      });
 }
 
 }  // namespace

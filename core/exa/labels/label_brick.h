@@ -39,8 +39,8 @@ class LabelBrick {
     each_tile([&](int tx, int ty, int tz) {
       const Clay clay = clay_of(tx, ty, tz);
       if (clay.points == 0) return;
-      const std::size_t context = static_cast<std::size_t>(16 * kind(tx - 1, ty, tz) + 4 * kind(tx, ty - 1, tz) +
-                                                           kind(tx, ty, tz - 1));
+      const std::size_t context =
+          static_cast<std::size_t>(16 * kind(tx - 1, ty, tz) + 4 * kind(tx, ty - 1, tz) + kind(tx, ty, tz - 1));
       std::uint8_t& found = kinds_[tile(tx, ty, tz)];
       if (coder.bit(mixed_[context], clay.envelope != 0 && clay.envelope != clay.points)) {
         found = kMixed;
@@ -100,9 +100,9 @@ class LabelBrick {
   /// States of all points with a border of unknown ones; those of mixed tiles are not known yet.
   void find_states() {
     for (std::size_t a = 0; a < 3; ++a) size_[a] = rows_.points[a] + 2 * kBorder;
-    states_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
-                       static_cast<std::size_t>(size_[2]),
-                   kUnknown);
+    states_.assign(
+        static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]),
+        kUnknown);
     for (int z = 0; z < rows_.points[2]; ++z)
       for (int y = 0; y < rows_.points[1]; ++y) {
         std::uint8_t* const to = states_.data() + place(0, y, z);

@@ -82,8 +82,8 @@ Result<std::vector<std::string>> encode_label_plane(const BitVolume& signs, cons
         for (std::size_t w = 0; w < LabelRows::kWords; ++w) {
           const std::uint64_t clay = rows.clay[rows.row(y, z)][w];
           if (clay == 0) continue;
-          const std::uint64_t own = clay & envelope.word(box.low[0] / 64 + static_cast<std::int64_t>(w), box.low[1] + y,
-                                                         box.low[2] + z);
+          const std::uint64_t own =
+              clay & envelope.word(box.low[0] / 64 + static_cast<std::int64_t>(w), box.low[1] + y, box.low[2] + z);
           rows.envelope[rows.row(y, z)][w] = own;
           any = any || own != 0;
         }
@@ -121,7 +121,8 @@ Result<EnvelopeBits> decode_label_plane(std::span<const std::string_view> chunks
       rows = rows_of(signs, label_box(signs.dims(), first + i));
       RangeDecoder in(chunk);
       LabelSource source{in};
-      const bool fits = LabelBrick(rows).code(source, [&](std::uint64_t more) { return (coded += more) <= most_points; });
+      const bool fits =
+          LabelBrick(rows).code(source, [&](std::uint64_t more) { return (coded += more) <= most_points; });
       if (!fits) too_many = true;
     });
     if (progress.cancelled()) return cancelled_error();

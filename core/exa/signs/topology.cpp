@@ -78,7 +78,7 @@ struct BrickOrder {
   const std::array<std::vector<std::string_view>, 3>& chunks;
   Dims dims;
   const BitVolume& coarse;
-  bool is_coarse = false, apart = false;  ///< apart: bricks do not know of each other
+  bool is_coarse = false, late_bricks = true;
   int level = 0;
   const std::optional<GridBox>& box;
   std::uint64_t most_points = 0;
@@ -95,8 +95,8 @@ class BrickDecoder {
     const auto i = static_cast<std::size_t>(index);
     const Brick at = brick_at(order_.dims, index);
     Owned owned =
-        owned_by(at, order_.level, out_.dims(), order_.box.has_value() || !order_.apart || !order_.lost.empty());
-    owned.shared = order_.apart;
+        owned_by(at, order_.level, out_.dims(), order_.box.has_value() || order_.late_bricks || !order_.lost.empty());
+    owned.shared = !order_.late_bricks;
     SignLattice top = top_lattice(order_.coarse, at);
     if (order_.chunks[2][i].empty()) {
       if (top.get(0, 0, 0))
@@ -110,7 +110,7 @@ class BrickDecoder {
       return;
     }
     const SignSurroundings around = surroundings_of(at, out_, order_.level, order_.dims);
-    SignBrick brick(std::move(top), at.late && !order_.apart ? &around : nullptr);
+    SignBrick brick(std::move(top), at.late && order_.late_bricks ? &around : nullptr);
     SignStatistics statistics(model, order_.is_coarse);
     std::uint64_t coded = 0;
     for (int l = kBrickLevels - 1; l >= order_.level; --l) {
@@ -153,12 +153,12 @@ Result<void> decode_bricks(const BrickOrder& order, BitVolume& out, Progress& pr
       return fail(ErrorKind::kBadData, "exa: {} chunks of signs found, {} bricks expected",
                   order.chunks[static_cast<std::size_t>(l)].size(), bricks);
   const std::vector<std::uint8_t> needed =
-      order.box ? bricks_of_box(order.dims, *order.box, order.apart) : std::vector<std::uint8_t>();
+      order.box ? bricks_of_box(order.dims, *order.box, order.late_bricks) : std::vector<std::uint8_t>();
   std::array<std::vector<std::int64_t>, 2> turns;  // those that the others know first
   for (std::int64_t i = 0; i < bricks; ++i)
     if ((!order.box || needed[static_cast<std::size_t>(i)] != 0) &&
         (order.lost.empty() || order.lost[static_cast<std::size_t>(i)] == 0))
-      turns[!order.apart && brick_at(order.dims, i).late ? 1 : 0].push_back(i);
+      turns[order.late_bricks && brick_at(order.dims, i).late ? 1 : 0].push_back(i);
   BrickDecoder decoder(order, out);
   for (const std::vector<std::int64_t>& turn : turns)
     parallel_for(static_cast<std::int64_t>(turn.size()), 1, [&](std::int64_t i) {
@@ -197,8 +197,8 @@ void fill_lost(const BitVolume& eighth, const Dims& dims, int level, const std::
 }
 }  // namespace
 
-std::vector<std::uint8_t> lost_with(const Dims& dims, std::vector<std::uint8_t> lost, bool apart) {
-  if (lost.empty() || apart) return lost;
+std::vector<std::uint8_t> lost_with(const Dims& dims, std::vector<std::uint8_t> lost, bool late_bricks) {
+  if (lost.empty() || !late_bricks) return lost;
   const Dims grid = brick_grid(dims);
   const std::array<std::int64_t, 3> along{grid.x, grid.y, grid.z}, step{1, grid.x, grid.slice()};
   const std::vector<std::uint8_t> damaged = lost;
@@ -225,7 +225,7 @@ Dims level_dims(const Dims& dims, int level) {
 
 std::size_t coarse_chunk_count(const Dims& dims) { return 1 + kBrickLevels * count_of(brick_grid(coarse_dims(dims))); }
 
-std::vector<std::uint8_t> bricks_of_box(const Dims& dims, const GridBox& box, bool apart) {
+std::vector<std::uint8_t> bricks_of_box(const Dims& dims, const GridBox& box, bool late_bricks) {
   const Dims grid = brick_grid(dims);
   std::vector<std::uint8_t> needed(count_of(grid), 0);
   for (std::int64_t i = 0; i < grid.count(); ++i) {
@@ -235,7 +235,7 @@ std::vector<std::uint8_t> bricks_of_box(const Dims& dims, const GridBox& box, bo
       touched = touched && brick.low[a] <= box.high[a] && brick.low[a] + brick.cells[a] >= box.low[a];
     if (!touched) continue;
     needed[static_cast<std::size_t>(i)] = 1;
-    if (!brick.late || apart) continue;
+    if (!brick.late || !late_bricks) continue;
     const std::array<std::int64_t, 3> along{grid.x, grid.y, grid.z}, step{1, grid.x, grid.slice()};
     for (std::size_t a = 0; a < 3; ++a) {
       if (brick.low[a] > 0) needed[static_cast<std::size_t>(i - step[a])] = 1;
@@ -269,15 +269,15 @@ Result<BitVolume> decode_signs(const SignChunks& chunks, const Dims& dims, int l
   }
   BitVolume eighth(coarse);
   const std::optional<GridBox> none;
-  DUBSAR_TRY(decode_bricks({middle, coarse, raw, true, chunks.apart, 0, none, most_points}, eighth, progress));
+  DUBSAR_TRY(decode_bricks({middle, coarse, raw, true, chunks.late_bricks, 0, none, most_points}, eighth, progress));
   BitVolume signs(points);
   if (level == kBrickLevels) {
     for (std::int64_t z = 0; z < points.z; ++z)
       for (std::int64_t y = 0; y < points.y; ++y)
         for (std::int64_t x = 0; x < points.x; ++x) signs.set(x, y, z, eighth.get(x, y, z));
   } else {
-    const std::vector<std::uint8_t> lost = lost_with(dims, chunks.lost, chunks.apart);
-    DUBSAR_TRY(decode_bricks({chunks.bricks, dims, eighth, false, chunks.apart, level, box, most_points, lost}, signs,
+    const std::vector<std::uint8_t> lost = lost_with(dims, chunks.lost, chunks.late_bricks);
+    DUBSAR_TRY(decode_bricks({chunks.bricks, dims, eighth, false, chunks.late_bricks, level, box, most_points, lost}, signs,
                              progress));
     if (!lost.empty()) fill_lost(eighth, dims, level, lost, signs);
   }

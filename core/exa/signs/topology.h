@@ -31,15 +31,15 @@ struct SignCode {
 
 /// The same chunks, borrowed. A level that is not wanted may be empty.
 struct SignChunks {
-  bool apart = false;  ///< as before version 5: bricks do not know of each other
+  bool late_bricks = true;  ///< ExaFeature::kLateBricks
   std::vector<std::string_view> coarse;
   std::array<std::vector<std::string_view>, 3> bricks;
   /// 1 for each brick whose chunks are damaged; empty: none. Bricks that know its points are lost with it.
   std::vector<std::uint8_t> lost;
 };
 
-/// The bricks that are lost with those: late ones (sign_surroundings.h) beside them, unless bricks are `apart`.
-std::vector<std::uint8_t> lost_with(const Dims& dims, std::vector<std::uint8_t> lost, bool apart);
+/// The bricks that are lost with those: late ones (sign_surroundings.h) beside them, if the file has these.
+std::vector<std::uint8_t> lost_with(const Dims& dims, std::vector<std::uint8_t> lost, bool late_bricks);
 
 /// How many chunks a volume has.
 std::size_t coarse_chunk_count(const Dims& dims);
@@ -52,9 +52,9 @@ struct GridBox {
   std::array<std::int64_t, 3> low{}, high{};
 };
 
-/// The bricks that decode_signs() needs for a box, 1 for each: those that touch it, and unless they are `apart` those
+/// The bricks that decode_signs() needs for a box, 1 for each: those that touch it, and with late ones those
 /// beside them that they know.
-std::vector<std::uint8_t> bricks_of_box(const Dims& dims, const GridBox& box, bool apart);
+std::vector<std::uint8_t> bricks_of_box(const Dims& dims, const GridBox& box, bool late_bricks);
 
 /// `dims` must have passed check_dims. `level` 0..3: only the points of spacing 2^level, whose volume has
 /// level_dims(dims, level) points. `box`: only bricks_of_box(), with the points of all their sides; elsewhere

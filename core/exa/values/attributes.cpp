@@ -299,8 +299,9 @@ std::vector<std::string> encode_labels(ExaLabel label, const QuadMesh& mesh, std
 }
 
 Result<std::vector<std::uint8_t>> decode_labels(ExaLabel label, const QuadMesh& mesh,
-                                                std::span<const std::string_view> chunks, Progress& progress) {
-  const std::int64_t items = label == ExaLabel::kPartition ? mesh.quad_count() : mesh.vertex_count();
+                                                std::span<const std::string_view> chunks, Progress& progress,
+                                                std::int64_t items) {
+  if (items < 0) items = label == ExaLabel::kPartition ? mesh.quad_count() : mesh.vertex_count();
   if (static_cast<std::int64_t>(chunks.size()) != item_chunks(items))
     return fail(ErrorKind::kBadData, "exa: {} chunks of an attribute found, {} expected for {} items", chunks.size(),
                 item_chunks(items), items);

@@ -35,8 +35,9 @@ void settle_light(const QuadMesh& mesh, std::span<std::uint8_t> light, Progress&
 /// threads; the same bytes for any number of them.
 std::vector<std::string> encode_labels(ExaLabel label, const QuadMesh& mesh, std::span<const std::uint8_t> values,
                                        Progress& progress);
-/// kBadData: wrong number of chunks, a label out of range.
+/// kBadData: wrong number of chunks, a label out of range. `items`: how many, if not one for each of the mesh.
 Result<std::vector<std::uint8_t>> decode_labels(ExaLabel label, const QuadMesh& mesh,
-                                                std::span<const std::string_view> chunks, Progress& progress);
+                                                std::span<const std::string_view> chunks, Progress& progress,
+                                                std::int64_t items = -1);
 
 }  // namespace dubsar

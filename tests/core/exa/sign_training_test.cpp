@@ -10,7 +10,7 @@
 
 #include "core/exa/signs/sign_brick.h"
 #include "core/exa/signs/topology.h"
-#include "core/exa/training/sign_trainer.h"
+#include "tests/bench/training/sign_trainer.h"
 
 namespace dubsar {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/exa/training/sign_trainer.h"
+#include "tests/bench/training/sign_trainer.h"
 
 #include <fmt/format.h>
 

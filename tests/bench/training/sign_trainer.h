@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/exa/signs/sign_model.h"
-#include "core/exa/training/sign_samples.h"
+#include "tests/bench/training/sign_samples.h"
 
 namespace dubsar {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/exa/exa_file.h"
-#include "core/exa/training/sign_trainer.h"
+#include "tests/bench/training/sign_trainer.h"
 
 namespace {
 using namespace dubsar;

@@ -1,4 +1,4 @@
-#include "core/exa/training/sign_samples.h"
+#include "tests/bench/training/sign_samples.h"
 
 #include <algorithm>
 
