@@ -157,7 +157,7 @@ Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, co
     DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec, all_but(lost)));
     DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec, all_but(damage.faces)));
     DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, index, samples, progress,
-                              {header.far_sides, header.far_sides, header.far_sides}));
+                              {header.sums.far_sides, header.sums.far_sides, header.sums.far_sides}));
     for (std::size_t i = 0; i < lost.size(); ++i)
       if (lost[i] != 0) put_crossings_half_way(samples, index, i);
     return {};
@@ -233,12 +233,12 @@ Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions&
                 counts.edges, counts.faces, header.samples.edges, header.samples.faces);
   DUBSAR_TRY(decode_offsets(reader, header, *index, samples, progress, damage ? *damage : ExaDamage()));
   std::optional<LabelledMesh> labelled;
-  if (header.contact && (damage == nullptr || reader.has("LABL"))) {
+  if (header.sums.contact && (damage == nullptr || reader.has("LABL"))) {
     DUBSAR_ASSIGN(labelled, decode_labelled(reader, header, *index, damage == nullptr, model, progress));
   } else {
     DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, *index, progress));
     model.mesh.embedded = header.sums.embedded;
-    if (header.contact)
+    if (header.sums.contact)
       return bare(std::move(model), header, progress);  // its vertices are not those that were written
   }
   index.reset();

@@ -174,8 +174,7 @@ void add_labels(const SurfaceModel& model, const ExaHeader& header, BlockList& b
 
 Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress, ExaProfile profile) {
   if (model.labelled && profile == ExaProfile::kPaper)
-    return fail(ErrorKind::kUsage,
-                "exa: the paper's profile does not hold parts that touch; write the file without --exa-profile paper");
+    return fail(ErrorKind::kUsage, "exa: the paper's profile does not hold parts that touch; take the compact one");
   BlockList positions, labelled;
   ExaHeader header;
   if (model.labelled) {
@@ -186,7 +185,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
     labelled.add("LEVI", true, code.evidence);
     if (!code.escapes.empty()) positions.add("ESCP", true, code.escapes);
     if (!code.exact.empty()) positions.add("POSN", true, code.exact);
-    header.contact = code.counts;
+    header.sums.contact = code.counts;
   } else {
     DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
     DUBSAR_TRY(check_model(model, base));
@@ -198,7 +197,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   header.isovalue = model.samples.isovalue;
   header.offset_bits = model.samples.offset_bits;
   header.closed = model.samples.closed;
-  header.far_sides = profile == ExaProfile::kCompact && ends_with_a_brick(model.samples.dims);
+  header.sums.far_sides = profile == ExaProfile::kCompact && ends_with_a_brick(model.samples.dims);
   header.sums.embedded = model.mesh.embedded;
   header.vertices = model.mesh.vertex_count();
   header.quads = model.mesh.quad_count();

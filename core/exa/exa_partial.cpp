@@ -97,7 +97,7 @@ Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Pro
     own_faces.push_back(faces.chunks[i]);
   }
   FarSides far_sides{};
-  for (std::size_t a = 0; a < 3; ++a) far_sides[a] = header.far_sides && low[a] + points[a] == size[a];
+  for (std::size_t a = 0; a < 3; ++a) far_sides[a] = header.sums.far_sides && low[a] + points[a] == size[a];
   DUBSAR_TRY(decode_samples(own_offsets, own_faces, samples, progress, far_sides));
   return bare_model(std::move(samples), header, glm::dvec3(low[0], low[1], low[2]), 1.0, progress);
 }

@@ -102,16 +102,17 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
   json["isovalue"] = static_cast<double>(header.isovalue);
   json["offset_bits"] = header.offset_bits;
   json["closed"] = header.closed;
-  if (header.far_sides) json["far_sides"] = true;
+  if (header.sums.far_sides) json["far_sides"] = true;
   json["vertices"] = header.vertices;
   json["quads"] = header.quads;
   json["edges"] = header.samples.edges;
   json["faces"] = header.samples.faces;
   json["position_sum"] = header.sums.positions;
   json["quad_sum"] = header.sums.quads;
-  if (header.contact)
-    json["contact"] = {
-        {"edges", header.contact->edges}, {"vertices", header.contact->vertices}, {"sum", header.contact->sum}};
+  if (header.sums.contact)
+    json["contact"] = {{"edges", header.sums.contact->edges},
+                       {"vertices", header.sums.contact->vertices},
+                       {"sum", header.sums.contact->sum}};
   json["normals"] = normals_name(header.normals);
   json["curvatures"] = header.curvatures;
   json["shapes"] = header.shapes ? "recomputed" : "stored";
@@ -157,10 +158,10 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
                   json["cut"].dump());
     header.sums.embedded = true;
   }
-  if (json.is_object() && json.contains("far_sides")) header.far_sides = members.flag("far_sides");
+  if (json.is_object() && json.contains("far_sides")) header.sums.far_sides = members.flag("far_sides");
   if (json.is_object() && json.contains("contact")) {
     Members contact(json["contact"]);
-    header.contact =
+    header.sums.contact =
         ExaContact{contact.count("edges"), contact.count("vertices"), static_cast<std::uint32_t>(contact.count("sum"))};
     if (!contact.wrong().empty())
       return fail(ErrorKind::kBadData, "exa: \"{}\" of \"contact\" is missing or wrong in the header", contact.wrong());
@@ -201,7 +202,7 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   if (bits >= 4 && edges > kAlwaysItems + kMostEdgesPerByte * file_bytes)
     return fail(ErrorKind::kBadData, "exa: {} edges in a file of {} bytes, expected at most {}", edges, file_bytes,
                 kAlwaysItems + kMostEdgesPerByte * file_bytes);
-  const ExaContact contact = header.contact.value_or(ExaContact());
+  const ExaContact contact = header.sums.contact.value_or(ExaContact());
   for (const std::int64_t count :
        {header.vertices, header.quads, header.samples.edges, header.samples.faces, contact.edges, contact.vertices})
     if (static_cast<std::uint64_t>(count) > kAlwaysItems + kMostPerByte * file_bytes)
@@ -235,9 +236,10 @@ std::uint64_t exa_memory_bound(const ExaHeader& header) {
   const auto items =
       static_cast<std::uint64_t>(header.vertices + header.quads + header.samples.edges + header.samples.faces);
   const std::uint64_t lattices = header.profile == ExaProfile::kPaper ? paper_sign_memory(header.dims) : 0;
-  const ExaContact contact = header.contact.value_or(ExaContact());
+  const ExaContact contact = header.sums.contact.value_or(ExaContact());
   const std::uint64_t labelled =
-      header.contact ? words * 17 + items * 60 + static_cast<std::uint64_t>(contact.edges + contact.vertices) * 400 : 0;
+      header.sums.contact ? words * 17 + items * 60 + static_cast<std::uint64_t>(contact.edges + contact.vertices) * 400
+                          : 0;
   return words * 9 + rows * 48 + items * 80 + labelled + lattices + (std::uint64_t{64} << 20);
 }
 

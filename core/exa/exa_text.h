@@ -31,17 +31,21 @@ enum class ExaNormals {
   kQuantised,   ///< stored in the steps of an octahedron; curvatures are principal_curvatures() with them
 };
 
-/// position_sum_of() and quad_sum_of() of the mesh that was written, and how its x-quads are cut.
-struct MeshSums {
-  std::uint32_t positions = 0, quads = 0;
-  bool embedded = false;  ///< as QuadMesh::embedded says
-};
-
 /// Of a surface of parts that touch (labelled_surface.h).
 struct ExaContact {
   std::int64_t edges = 0;     ///< of the grid, between clay of both
   std::int64_t vertices = 0;  ///< that are not at the air
   std::uint32_t sum = 0;      ///< over their places, the offsets of the edges, and how the vertices are known
+};
+
+/// position_sum_of() and quad_sum_of() of the mesh that was written, how its x-quads are cut, and what not every mesh
+/// has.
+struct MeshSums {
+  std::uint32_t positions = 0, quads = 0;
+  bool embedded = false;  ///< as QuadMesh::embedded says
+  /// The last brick along an axis of 128 k + 1 points has the offsets and face decisions of its far side.
+  bool far_sides = false;
+  std::optional<ExaContact> contact;
 };
 
 struct ExaHeader {
@@ -57,9 +61,6 @@ struct ExaHeader {
   bool curvatures = false;  ///< kRecomputed, kQuantised: k_min and k_max follow
   bool shapes = false;      ///< shape_classes() of the curvatures; not stored
   CurvatureMethod curvature = CurvatureMethod::kFit;
-  /// The last brick along an axis of 128 k + 1 points has the offsets and face decisions of its far side.
-  bool far_sides = false;
-  std::optional<ExaContact> contact;
   std::string tool;  ///< program and version that wrote the file
   MeshSums sums;
 };

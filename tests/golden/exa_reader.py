@@ -34,7 +34,7 @@ def read_blocks(data):
 
     need(data[:8] == b"\x89EXA\r\n\x1a\n", "magic")
     major, _, count, size = struct.unpack_from("<HHIQ", data, 8)
-    need(major in (3, 4, 5, 6) and count <= 256 and size == len(data), "head")
+    need(major in (3, 4, 5, 6, 7) and count <= 256 and size == len(data), "head")
     end = 24 + 28 * count
     need(zlib.crc32(data[:end]) == struct.unpack_from("<I", data, end)[0], "sum of the table")
     blocks, at = {"major": major}, end + 4
@@ -410,14 +410,16 @@ def item_order(signs, faces):
     return items[np.lexsort((items[:, 0], items[:, 3], items[:, 1], items[:, 2]))]
 
 
-def by_brick(items, dims):
+def by_brick(items, dims, far_sides):
     grid = [len(range(0, padded(n), 128)) for n in dims]
     brick = np.minimum(items[:, :3] // 128, np.array(grid) - 1)
-    return brick[:, 0] + grid[0] * (brick[:, 1] + grid[1] * brick[:, 2])
+    owner = brick[:, 0] + grid[0] * (brick[:, 1] + grid[1] * brick[:, 2])
+    nobody = (items[:, :3] // 128 >= np.array(grid)).any(axis=1) & (not far_sides)
+    return np.where(nobody, -1, owner)
 
 
-def decode_faces(chunks, items, dims):
-    owner, joined = by_brick(items, dims), np.zeros(len(items), dtype=np.uint8)
+def decode_faces(chunks, items, dims, far_sides):
+    owner, joined = by_brick(items, dims, far_sides), np.zeros(len(items), dtype=np.uint8)
     for i, chunk in enumerate(chunks):
         decoder, model = Decoder(chunk), AdaptiveBit(32768, 6)
         for k in np.flatnonzero(owner == i):
@@ -425,9 +427,9 @@ def decode_faces(chunks, items, dims):
     return joined
 
 
-def decode_offsets(chunks, signs, edges, bits):
+def decode_offsets(chunks, signs, edges, bits, far_sides):
     dims = signs.shape[::-1]
-    s, owner, offsets = signs.transpose(2, 1, 0), by_brick(edges, dims), np.zeros(len(edges), dtype=np.uint16)
+    s, owner, offsets = signs.transpose(2, 1, 0), by_brick(edges, dims, far_sides), np.zeros(len(edges), dtype=np.uint16)
     n, rest = min(bits, 6), bits - min(bits, 6)
     for i, brick in enumerate(bricks_of(dims)):
         if not chunks[i]:
@@ -1184,6 +1186,8 @@ def read(path):
     """Header, mesh and attributes of a file; raises ValueError where something is wrong."""
     blocks = read_blocks(Path(path).read_bytes())
     head = json.loads(blocks["HEAD"][0])
+    if "contact" in head:
+        raise ValueError("labels, which this reader does not know")
     dims, bits = [int(n) for n in head["dims"]], head["offset_bits"]
     paper = head.get("profile") == "paper"
     signs = decode_octets(blocks["POCT"], dims) if paper else decode_signs(blocks, dims)
@@ -1191,8 +1195,9 @@ def read(path):
     if paper:
         joined, offsets = raw_numbers(blocks["PFCE"], head["faces"], 1), raw_numbers(blocks["POFF"], head["edges"], bits)
     else:
-        joined = decode_faces(blocks["FACE"], ambiguous, dims)
-        offsets = decode_offsets(blocks["OFFS"], signs, edges, bits)
+        far_sides = head.get("far_sides", False)
+        joined = decode_faces(blocks["FACE"], ambiguous, dims, far_sides)
+        offsets = decode_offsets(blocks["OFFS"], signs, edges, bits, far_sides)
     positions, quads, doubled = build_mesh(signs, edges, offsets, ambiguous, joined, bits, head["closed"])
     mesh = Neighbours(len(positions), quads, doubled)
     if "ESCP" in blocks:

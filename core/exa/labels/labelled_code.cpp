@@ -140,7 +140,7 @@ Result<LabelledMesh> decode_labelled(const ExaReader& reader, const ExaHeader& h
   if (!header.closed) return fail(ErrorKind::kBadData, "exa: labels of an open surface found, expected a closed one");
   DUBSAR_ASSIGN(const std::string table, reader.text("PART"));
   DUBSAR_ASSIGN(model.partitions, parse_exa_partitions(table));
-  const ExaContact& counts = *header.contact;
+  const ExaContact& counts = *header.sums.contact;
   LabelledSurface& surface = model.labelled.emplace();
   {
     DUBSAR_ASSIGN(const ExaChunks chunks, reader.chunks("LABL", kCodec));

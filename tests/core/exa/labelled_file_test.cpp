@@ -34,7 +34,7 @@ SurfaceModel labelled_model(const Labels& volume, unsigned seed, float moved, in
   }
   for (std::size_t q = 0; q < model.mesh.quads.size(); ++q)
     model.quad_partition.push_back(static_cast<std::uint8_t>(random() % 2));
-  model.partitions = {{0, "tablet", "", 0.0, 0.0, false}, {1, "envelope_inside", "envelope", 0.0, 0.0, false}};
+  model.partitions = {{0, "tablet", "", 0.0, 0.0, false}, {1, "envelope inside", "envelope", 0.0, 0.0, false}};
   LabelledSurface& surface = model.labelled.emplace();
   surface.envelope = *scene.envelope;
   surface.envelope.compact(model.samples.signs);
@@ -90,8 +90,8 @@ TEST_F(LabelledFile, SaysWhichVersionItNeeds) {
   EXPECT_EQ(exa_major_of(encoded(sample_model({12, 9, 10}, Kind::kBlob, 6))), 6);
   EXPECT_EQ(exa_major_of(encoded(sample_model({129, 9, 10}, Kind::kBlob, 6))), 7);
   const ExaHeader header = ExaReader::open(file_of(blocks)).value().header().value();
-  ASSERT_TRUE(header.contact.has_value());
-  EXPECT_GT(header.contact->edges, 500);
+  ASSERT_TRUE(header.sums.contact.has_value());
+  EXPECT_GT(header.sums.contact->edges, 500);
 }
 
 TEST_F(LabelledFile, IsPlausibleAndHasItsLevelsAndBoxes) {
