@@ -70,6 +70,22 @@ TEST(ExaLabels, ComeBackWhateverTheyAre) {
   }
 }
 
+/// Written by a program that was made from docs/exa.md alone.
+TEST(ExaLabels, AreTheBytesOfThePage) {
+  Labels volume(Dims{14, 11, 9});
+  LabelledScene::each(volume.dims, [&](auto x, auto y, auto z) {
+    const bool clay = (x - 7) * (x - 7) + (y - 5) * (y - 5) + (z - 4) * (z - 4) < 40;
+    volume.at(x, y, z) = !clay ? 0 : 2 * x + y + 3 * z >= 32 ? 2 : 1;
+  });
+  const LabelledScene scene(volume);
+  SilentProgress progress;
+  const auto chunks = encode_label_plane(scene.samples->signs, *scene.envelope, progress).value();
+  ASSERT_EQ(chunks.size(), 1u);
+  std::string hex;
+  for (const char byte : chunks[0]) hex += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  EXPECT_EQ(hex, "f1414c54cc8b45fd1a7fd192ee1e8444a1c7290de43383c402");
+}
+
 TEST(ExaLabels, OfOneClayTakeNothingOrNextToNothing) {
   for (const std::uint8_t label : {std::uint8_t{1}, std::uint8_t{2}}) {
     Labels volume(Dims{200, 100, 90});
