@@ -8,6 +8,7 @@
 
 #include "core/base/numbers/median.h"
 #include "core/base/system/parallel.h"
+#include "core/contact/dip_rows.h"
 #include "core/contact/row_sums.h"
 
 namespace dubsar {
@@ -17,10 +18,9 @@ constexpr std::int64_t kEdge = BrickMap<float>::kEdge;
 /// Steps to the disks in the clay on both sides. At two the dip of a film is still there, at three it is over; but one
 /// disk alone has as much noise as the middle, and one that is far meets the other wall of a wedge. The first must be
 /// in clay, the others count where they are.
-constexpr std::array<float, 3> kArms{3.0f, 2.0f, 4.0f};
+constexpr std::array<float, kDipArms> kArms{3.0f, 2.0f, 4.0f};
 constexpr float kDisk = 3.2f, kDiskDeviation = 1.8f;
 constexpr float kLeastDipCosine = 0.45f;  ///< flanks of wedges stand up to 60 degrees from the contact
-constexpr float kNoDip = -1e30f;
 /// Of the strongest dip, noise that is taken for at least: as of a scan of 8 bits.
 constexpr float kLeastNoise = 1.0f / 256.0f;
 
@@ -46,11 +46,10 @@ struct Block {
 constexpr int kArmHalo = 4, kDiskHalo = 3;  ///< of directions(): no arm and no disk reaches farther along an axis
 using Around = Block<float, kArmHalo + kDiskHalo>;
 using Means = Block<float, kArmHalo>;
-using Clay = Block<bool, kArmHalo>;
+using Clay = Block<std::int32_t, kArmHalo>;  // 1: clay, 0: air
 
 struct Direction {
-  glm::vec3 unit;
-  std::array<std::ptrdiff_t, kArms.size()> arms;  ///< steps in a block
+  DipDirection dip;
   std::vector<RowTap> disk;
 };
 
@@ -63,14 +62,16 @@ std::vector<Direction> directions() {
     const glm::ivec3 step(k % kWide - kFar, k / kWide % kWide - kFar, k / (kWide * kWide) - kFar);
     if (step.x % 2 == 0 && step.y % 2 == 0 && step.z % 2 == 0) continue;  // twice another
     Direction d;
-    d.unit = glm::normalize(glm::vec3(step));
-    for (std::size_t i = 0; i < kArms.size(); ++i) d.arms[i] = Means::away(glm::ivec3(glm::round(kArms[i] * d.unit)));
+    const glm::vec3 unit = glm::normalize(glm::vec3(step));
+    d.dip = {{unit.x, unit.y, unit.z}, kLeastDipCosine, {}};
+    for (std::size_t i = 0; i < kArms.size(); ++i)
+      d.dip.arms[i] = static_cast<std::int32_t>(Means::away(glm::ivec3(glm::round(kArms[i] * unit))));
     float sum = 0.0f;
     for (int z = -3; z <= 3; ++z)
       for (int y = -3; y <= 3; ++y)
         for (int x = -3; x <= 3; ++x) {
           const glm::vec3 q(x, y, z);
-          if (glm::length(q) > kDisk || std::abs(glm::dot(q, d.unit)) > 0.45f) continue;
+          if (glm::length(q) > kDisk || std::abs(glm::dot(q, unit)) > 0.45f) continue;
           d.disk.push_back({static_cast<std::int32_t>(Around::away({x, y, z})),
                             std::exp(-0.5f * glm::dot(q, q) / (kDiskDeviation * kDiskDeviation))});
           sum += d.disk.back().weight;
@@ -86,35 +87,9 @@ bool in_clay(const BitVolume& inside, const glm::ivec3& p) {
   return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < d.x && p.y < d.y && p.z < d.z && inside.get(p.x, p.y, p.z);
 }
 
-bool clay_beside(const Clay& clay, std::size_t at, std::ptrdiff_t arm) {
-  return clay.value[at + static_cast<std::size_t>(arm)] && clay.value[at - static_cast<std::size_t>(arm)];
-}
+static_assert(Means::kSide == kRowLength && kEdge == kDipRow);
 
-static_assert(Means::kSide <= kRowLength);
-
-/// Of a disk around each point of the rows that somebody asks for.
-class DiskMeans {
- public:
-  void ask_for(std::size_t at) { asked_[at / Means::kSide] = true; }
-  void find(const Around& around, const Direction& d) {
-    rows_.clear();
-    for (int z = 0; z < Means::kSide; ++z)
-      for (int y = 0; y < Means::kSide; ++y)
-        if (const std::size_t row = Means::place(0, y, z); asked_[row / Means::kSide])
-          rows_.push_back({static_cast<std::int32_t>(Around::place(kDiskHalo, y + kDiskHalo, z + kDiskHalo)),
-                           static_cast<std::int32_t>(row)});
-    sum_rows(around.value.data(), d.disk, rows_, means_.value.data());
-    asked_.fill(false);
-  }
-  float at(std::size_t place) const { return means_.value[place]; }
-
- private:
-  std::array<bool, static_cast<std::size_t>(Means::kSide) * Means::kSide> asked_{};
-  std::vector<SummedRow> rows_;
-  Means means_;
-};
-
-/// The dips of the nodes of a brick.
+/// The dips of the nodes of a brick, row by row.
 class BrickDips {
  public:
   BrickDips(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
@@ -124,61 +99,73 @@ class BrickDips {
   void find(std::uint32_t first, std::uint32_t last, Dips& dips) {
     const glm::ivec3 corner = band_.point(first) / static_cast<int>(kEdge) * static_cast<int>(kEdge);
     around_.fill(corner, [&](int x, int y, int z) { return density_.raw(x, y, z); });
-    clay_.fill(corner, [&](int x, int y, int z) { return in_clay(inside_, {x, y, z}); });
-    nodes_.clear();
+    clay_.fill(corner, [&](int x, int y, int z) { return in_clay(inside_, {x, y, z}) ? 1 : 0; });
+    rows_.clear();
+    std::int32_t last_row = -1;
     for (std::uint32_t node = first; node < last; ++node) {
-      const glm::ivec3 p = band_.point(node), at = p - corner + kArmHalo;
-      nodes_.push_back({node, Means::place(at.x, at.y, at.z), band_.normal(node)});
-      dips.density[node] = density_.get(p.x, p.y, p.z);
+      const glm::ivec3 at = band_.point(node) - corner;
+      if (const std::int32_t row = at.z * static_cast<int>(kEdge) + at.y; row != last_row) {
+        rows_.emplace_back().place =
+            static_cast<std::int32_t>(Means::place(kArmHalo, at.y + kArmHalo, at.z + kArmHalo));
+        last_row = row;
+      }
+      const glm::vec3& normal = band_.normal(node);
+      const auto x = static_cast<std::size_t>(at.x);
+      DipRow& row = rows_.back();
+      for (glm::length_t axis = 0; axis < 3; ++axis) row.normal[static_cast<std::size_t>(axis)][x] = normal[axis];
+      row.strength[x] = kNoDip;
+      row.density[x] = density_.get(corner.x + at.x, corner.y + at.y, corner.z + at.z);
     }
-    for (const Direction& d : directions_) find_along(d, dips);
+    for (const Direction& d : directions_) find_along(d);
+    std::size_t row = 0;
+    for (std::uint32_t node = first; node < last; ++node) {
+      const glm::ivec3 at = band_.point(node) - corner + kArmHalo;
+      if (rows_[row].place != static_cast<std::int32_t>(Means::place(kArmHalo, at.y, at.z))) ++row;
+      dips.strength[node] = rows_[row].strength[static_cast<std::size_t>(at.x - kArmHalo)];
+      dips.density[node] = rows_[row].density[static_cast<std::size_t>(at.x - kArmHalo)];
+    }
   }
 
  private:
-  struct Node {
-    std::uint32_t number;
-    std::size_t place;
-    glm::vec3 normal;
-  };
-
-  void find_along(const Direction& d, Dips& dips) {
-    across_.clear();
-    for (const Node& node : nodes_) {
-      if (std::abs(glm::dot(d.unit, node.normal)) < kLeastDipCosine || !clay_beside(clay_, node.place, d.arms[0]))
-        continue;
-      across_.push_back({node.number, node.place});
-      means_.ask_for(node.place);
-      for (const std::ptrdiff_t arm : d.arms) {
-        means_.ask_for(node.place + static_cast<std::size_t>(arm));
-        means_.ask_for(node.place - static_cast<std::size_t>(arm));
+  void find_along(const Direction& d) {
+    across_.resize(rows_.size());
+    const std::size_t count = rows_across(rows_, d.dip, clay_.value.data(), across_.data());
+    if (count == 0) return;
+    asked_.fill(false);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t place = rows_[across_[i]].place - kArmHalo;
+      const auto ask_for = [&](std::int32_t away) {  // an arm ends in one row, or runs on into the next
+        const std::int32_t from = place + kArmHalo + away;
+        asked_[static_cast<std::size_t>(from / Means::kSide)] = true;
+        asked_[static_cast<std::size_t>((from + static_cast<int>(kEdge) - 1) / Means::kSide)] = true;
+      };
+      ask_for(0);
+      for (const std::int32_t arm : d.dip.arms) {
+        ask_for(arm);
+        ask_for(-arm);
       }
     }
-    if (across_.empty()) return;
-    means_.find(around_, d);
-    for (const auto& [node, place] : across_) {
-      float clay = 0.0f, disks = 0.0f;
-      for (const std::ptrdiff_t arm : d.arms) {
-        if (arm != d.arms[0] && !clay_beside(clay_, place, arm)) continue;
-        clay += means_.at(place + static_cast<std::size_t>(arm)) + means_.at(place - static_cast<std::size_t>(arm));
-        disks += 2.0f;
-      }
-      const float middle = means_.at(place), dip = clay / disks - middle;
-      if (dip > dips.strength[node]) {
-        dips.strength[node] = dip;
-        dips.density[node] = middle;
-      }
-    }
+    summed_.clear();
+    for (int z = 0; z < Means::kSide; ++z)
+      for (int y = 0; y < Means::kSide; ++y)
+        if (const std::size_t row = Means::place(0, y, z); asked_[row / Means::kSide])
+          summed_.push_back({static_cast<std::int32_t>(Around::place(kDiskHalo, y + kDiskHalo, z + kDiskHalo)),
+                             static_cast<std::int32_t>(row)});
+    sum_rows(around_.value.data(), d.disk, summed_, means_.value.data());
+    raise_dips(rows_, std::span(across_).first(count), d.dip, clay_.value.data(), means_.value.data());
   }
 
   const ContactBand& band_;
   const BitVolume& inside_;
   const BandDensity& density_;
   const std::vector<Direction>& directions_;
-  std::vector<Node> nodes_;
-  std::vector<std::pair<std::uint32_t, std::size_t>> across_;  ///< nodes for which a direction is one, their places
+  std::vector<DipRow> rows_;           ///< that have nodes
+  std::vector<std::uint32_t> across_;  ///< those of them for some of whose nodes a direction is one across
+  std::array<bool, static_cast<std::size_t>(Means::kSide) * Means::kSide> asked_{};
+  std::vector<SummedRow> summed_;
   Around around_;
   Clay clay_;
-  DiskMeans means_;
+  Means means_;
 };
 
 /// Nodes [first of a brick, first of the next): they stand brick by brick.

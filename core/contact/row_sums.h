@@ -16,8 +16,7 @@ struct SummedRow {
 inline constexpr std::int32_t kRowLength = 16;  ///< values that are read and written of each row
 
 /// to[row.to + i] = sum of weight * from[row.from + away + i] over the taps in their order, for i below kRowLength.
-/// Rows one after another, so that a row may end in the next; both arrays hold kRowLength values from wherever a row
-/// begins. The same on every processor.
+/// Rows that are written do not overlap. The same on every processor.
 void sum_rows(const float* from, std::span<const RowTap> taps, std::span<const SummedRow> rows, float* to);
 
 }  // namespace dubsar
