@@ -37,6 +37,7 @@ usage() {
               ./do bench killed: kill -9 at 20 random moments, then --resume; exit code 1 where bytes differ
               ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
               ./do bench wedges [--quick | --size XxYxZ] [--seed N]: what is read of a hidden tablet, beside what is wanted
+              ./do bench ablation [--size XxYxZ] [--seed N] [--seeds COUNT]: what each rule of the contact is worth, with the spread
               ./do bench invariance [--seeds N]: the same object cropped, mirrored, with axes exchanged: how far answers lie apart
               ./do bench wedges --scanner [--size XxYxZ] [--seed N] [--seeds COUNT]: the same of scans with an X-ray scanner's artefacts
               ./do bench light: from the start of a kiosk to its first picture, 1.6 million vertices on 48 views
@@ -288,6 +289,11 @@ bench() {
   if [ "${1:-}" = wedges ]; then
     build_target --target wedges_bench
     "$build/tests/bench/wedges_bench" "${@:2}"
+    return
+  fi
+  if [ "${1:-}" = ablation ]; then
+    build_target --target ablation_bench
+    "$build/tests/bench/ablation_bench" "${@:2}"
     return
   fi
   build_target --target dubsar_bench

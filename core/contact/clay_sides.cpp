@@ -130,12 +130,13 @@ LatticeCut cut_in_blocks(const ContactBand& band) {
   const auto along = [](std::int64_t n) { return static_cast<std::uint32_t>(static_cast<float>(n) / kBlockSide) + 1; };
   const std::uint32_t x = along(d.x), y = along(d.y), z = along(d.z);
   std::vector<std::uint32_t> block(band.nodes.size());
-  for (std::size_t n = 0; n < block.size(); ++n) {
+  std::vector<float> height(block.size());
+  parallel_for(static_cast<std::int64_t>(block.size()), kNodeGrain, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
     const glm::uvec3 cube(glm::max(band.samples[band.nodes[n].sample].position, glm::vec3(0.0f)) / kBlockSide);
     block[n] = (std::min(cube.z, z - 1) * y + std::min(cube.y, y - 1)) * x + std::min(cube.x, x - 1);
-  }
-  std::vector<float> height(block.size());
-  for (std::size_t n = 0; n < height.size(); ++n) height[n] = band.nodes[n].height;
+    height[n] = band.nodes[n].height;
+  });
   return {block, x * y * z, height};
 }
 
@@ -158,10 +159,10 @@ void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side) {
 
 ClayDivision::ClayDivision(const ClayEvidence& evidence)
     : band_(evidence.band),
-      dips_(evidence.dips),
       whole_(evidence.whole),
       cut_(cut_in_blocks(evidence.band)),  // source side: tablet
       certain_(evidence.band.nodes.size(), false) {
+  const Dips& dips = evidence.dips;
   const auto count = static_cast<std::uint32_t>(band_.nodes.size());
   std::vector<std::int64_t> wish(count);  // > 0: tablet
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {
@@ -191,7 +192,7 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
   });
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {
     each_face_of(band_, static_cast<std::uint32_t>(i), [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
-      cut_.add_step_cost(n, m, axis, cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));
+      cut_.add_step_cost(n, m, axis, cost_of_face(band_, n, m, axis, 0.5f * (dips.strength[n] + dips.strength[m])));
     });
   });
   for (const ClayCavity& cavity : evidence.whole)
@@ -201,8 +202,10 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
 Result<std::vector<ClaySide>> ClayDivision::sides(Progress& progress) {
   DUBSAR_TRY(cut_.solve(progress));
   std::vector<ClaySide> side(band_.nodes.size());
-  for (std::uint32_t n = 0; n < side.size(); ++n)
+  parallel_for(static_cast<std::int64_t>(side.size()), kNodeGrain, [&](std::int64_t i) {
+    const auto n = static_cast<std::uint32_t>(i);
     side[n] = cut_.on_source_side(n) ? ClaySide::kTablet : ClaySide::kEnvelope;
+  });
   constexpr int kMostRounds = 5;  // seldom more than two
   for (int round = 0; round < kMostRounds; ++round) {
     adopt_islands(band_, side, certain_);
@@ -210,19 +213,6 @@ Result<std::vector<ClaySide>> ClayDivision::sides(Progress& progress) {
     if (!keep_whole(band_, whole_, side)) break;
   }
   return side;
-}
-
-Result<std::vector<ClaySide>> ClayDivision::sides_if_weaker(const std::vector<bool>& where, float by,
-                                                            Progress& progress) {
-  const auto strength = [&](std::uint32_t n) { return where[n] ? dips_.strength[n] - by : dips_.strength[n]; };
-  for (std::uint32_t node = 0; node < where.size(); ++node)
-    each_face_of(band_, node, [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
-      if (!where[n] && !where[m]) return;
-      cut_.add_step_cost(n, m, axis,
-                         cost_of_face(band_, n, m, axis, 0.5f * (strength(n) + strength(m))) -
-                             cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));
-    });
-  return sides(progress);
 }
 
 }  // namespace dubsar

@@ -32,7 +32,7 @@ struct ClayEvidence {
   const std::vector<ClayCavity>& whole;
 };
 
-/// The cut, kept so that it can be found once more with other dips. Borrows the band and its dips. 70 bytes a node.
+/// The cut. Borrows the band. 70 bytes a node.
 class ClayDivision {
  public:
   explicit ClayDivision(const ClayEvidence& evidence);
@@ -41,13 +41,8 @@ class ClayDivision {
   /// cut off by air and counts as the tablet's. kCancelled.
   Result<std::vector<ClaySide>> sides(Progress& progress);
 
-  /// The same if the strength of the dips of some nodes were less by so much: quick where they are few. May be asked
-  /// for once.
-  Result<std::vector<ClaySide>> sides_if_weaker(const std::vector<bool>& where, float by, Progress& progress);
-
  private:
   const ContactBand& band_;
-  const Dips& dips_;
   std::vector<ClayCavity> whole_;
   LatticeCut cut_;
   std::vector<bool> certain_;

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/base/numbers/median.h"
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 
 namespace dubsar {
 namespace {
@@ -59,17 +59,28 @@ using Layers = std::array<std::vector<float>, kLayers.size()>;
 std::vector<Layers> layers_of_pieces(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
                                      float side) {
   const glm::vec3 middle = middle_of(band.samples);
+  struct Value {
+    std::array<int, 3> piece;
+    std::size_t layer;
+    float density;
+  };
+  const std::vector<Value> values = parallel_gather<Value>(
+      static_cast<std::int64_t>(band.nodes.size()), 1 << 14,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Value>& found) {
+        for (std::int64_t n = begin; n < end; ++n) {
+          const ContactBand::Node& node = band.nodes[static_cast<std::size_t>(n)];
+          if (std::abs(node.height) < 0.8f * node.distance) continue;
+          const float height = node.height / band.reach_at(node.height);
+          for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
+            if (height < kLayers[layer][0] || height > kLayers[layer][1]) continue;
+            if (air_near(inside, {node.x, node.y, node.z})) continue;
+            const glm::ivec3 piece(glm::round((band.samples[node.sample].position - middle) / side));
+            found.push_back({{piece.x, piece.y, piece.z}, layer, density.get(node.x, node.y, node.z)});
+          }
+        }
+      });
   std::map<std::array<int, 3>, Layers> pieces;
-  for (const ContactBand::Node& node : band.nodes) {
-    if (std::abs(node.height) < 0.8f * node.distance) continue;
-    const float height = node.height / band.reach_at(node.height);
-    for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
-      if (height < kLayers[layer][0] || height > kLayers[layer][1]) continue;
-      if (air_near(inside, {node.x, node.y, node.z})) continue;
-      const glm::ivec3 piece(glm::round((band.samples[node.sample].position - middle) / side));
-      pieces[{piece.x, piece.y, piece.z}][layer].push_back(density.get(node.x, node.y, node.z));
-    }
-  }
+  for (const Value& value : values) pieces[value.piece][value.layer].push_back(value.density);
   std::vector<Layers> enough;
   for (auto& [place, layers] : pieces)
     if (layers[1].size() >= kLeastNodes && layers[2].size() >= kLeastNodes) enough.push_back(std::move(layers));

@@ -15,20 +15,6 @@ constexpr float kDent = 1.2f;      ///< steps below it
 constexpr std::size_t kNearest = 64;
 constexpr float kDentSignificance = 2.5f;
 constexpr float kMostDentStrength = 2.5f;  ///< of one vertex: the fringe of a pore is no film, however dark
-constexpr float kHole = 2.0f;              ///< steps below the sheet
-constexpr std::size_t kLeastHole = 24;     ///< vertices of a wedge so deep: some five across
-
-/// Vertices in holes narrower than a wedge.
-std::vector<bool> narrow_holes(const InterfaceRings& rings, const std::vector<float>& depth,
-                               const std::vector<bool>& film) {
-  std::vector<bool> deep(depth.size()), narrow(depth.size(), false);
-  for (std::size_t i = 0; i < deep.size(); ++i) deep[i] = film[i] && depth[i] > kHole;
-  each_piece(rings, deep, [&](const std::vector<std::uint32_t>& hole) {
-    if (hole.size() >= kLeastHole) return;
-    for (const std::uint32_t v : hole) narrow[v] = true;
-  });
-  return narrow;
-}
 
 }  // namespace
 
@@ -56,12 +42,13 @@ std::vector<float> dent_depths(const InterfaceMesh& mesh, const InterfaceRings& 
 }
 
 std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings& rings,
-                                 const std::vector<glm::vec3>& dual_positions, const std::vector<bool>& film) {
+                                 const std::vector<glm::vec3>& dual_positions, const std::vector<bool>& film,
+                                 const PlainClay& plain, ContactRules rules) {
   const std::vector<float> depth = dent_depths(mesh, rings, dual_positions);
   const auto in_dent = [&](std::size_t i) { return film[i] && depth[i] > kDent; };
   std::vector<std::uint8_t> by_chance(depth.size(), 0);
   each_vertex(depth.size(), [&](std::size_t i) {
-    if (!in_dent(i)) return;
+    if (!in_dent(i) || !rules.has(ContactRule::kDents)) return;
     std::vector<std::uint32_t> nearest{static_cast<std::uint32_t>(i)};
     float sum = 0.0f;
     for (std::size_t k = 0; k < nearest.size(); ++k) {
@@ -71,12 +58,11 @@ std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings
           nearest.push_back(w);
     }
     const auto count = static_cast<float>(nearest.size());
-    by_chance[i] = sum / count < kClayStrength + kDentSignificance * kStrengthDeviation / std::sqrt(count);
+    by_chance[i] = sum / count < plain.strength + kDentSignificance * plain.deviation / std::sqrt(count);
   });
-  const std::vector<bool> narrow = narrow_holes(rings, depth, film);
   std::vector<bool> doubtful(depth.size(), false);
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
-    if (by_chance[i] == 0 && !narrow[i]) continue;
+    if (by_chance[i] == 0) continue;
     doubtful[i] = true;
     for (const std::uint32_t w : rings.added[i]) doubtful[w] = true;
   }

@@ -7,13 +7,9 @@
 
 #include "core/contact/interface_mesh.h"
 #include "core/contact/interface_rings.h"
+#include "core/contact/rules.h"
 
 namespace dubsar {
-
-/// Mean strength of dips along a cut through clay without a film: it seeks what is dark.
-inline constexpr float kClayStrength = 1.1f;
-/// Deviation of the mean of so many of their neighbours: this over the root of their number (one of .22 for some 80).
-inline constexpr float kStrengthDeviation = 2.0f;
 
 /// How many steps each added vertex lies below a sheet that spans dents some 12 steps wide, towards the envelope. The
 /// same for any number of threads.
@@ -22,10 +18,10 @@ std::vector<float> dent_depths(const InterfaceMesh& mesh, const InterfaceRings& 
 
 /// Added vertices in dents, more than 1.2 steps below a sheet that spans them towards the envelope, whose dips do not
 /// stand out of what chance makes of clay: the mean strength of the nearest 64 vertices of the dent, or of all where it
-/// has fewer, is not 2.5 deviations above kClayStrength. Those in dents of fewer than 24 vertices that are 2 steps deep
-/// are doubtful whatever their dips: a stylus leaves no hole that is deeper than it is wide. What touches such vertices
-/// is doubtful, too. `film`: of each added vertex; others are no part of a dent. The same for any number of threads.
+/// has fewer, is not 2.5 deviations above that of `plain` clay. What touches such vertices is doubtful, too. `film`: of
+/// each added vertex; others are no part of a dent. The same for any number of threads.
 std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings& rings,
-                                 const std::vector<glm::vec3>& dual_positions, const std::vector<bool>& film);
+                                 const std::vector<glm::vec3>& dual_positions, const std::vector<bool>& film,
+                                 const PlainClay& plain = {}, ContactRules rules = {});
 
 }  // namespace dubsar

@@ -8,8 +8,8 @@
 
 #include "core/base/numbers/median.h"
 #include "core/base/system/parallel.h"
-#include "core/contact/dip_rows.h"
-#include "core/contact/row_sums.h"
+#include "core/contact/kernels/dip_rows.h"
+#include "core/contact/kernels/row_sums.h"
 
 namespace dubsar {
 namespace {

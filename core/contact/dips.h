@@ -30,12 +30,19 @@ class BandDensity {
   BrickMap<float> raw_, smooth_;
 };
 
+/// Strengths of dips along a cut through clay without a film: it seeks what is dark. As white noise makes them.
+struct PlainClay {
+  float strength = 1.1f;   ///< mean
+  float deviation = 2.0f;  ///< of the mean of n neighbours, times the root of n
+};
+
 struct Dips {
   /// Of each node: how much denser the clay on both sides is on average than a disk through the node, at the best of
   /// the directions across the contact, in deviations of what clay without an interface shows.
   std::vector<float> strength;
   std::vector<float> density;  ///< of that disk; empty: it does not say where the contact is
   float deviation = 0.0f;      ///< of the noise in `strength`, density
+  PlainClay plain{};           ///< what chance makes of it
 };
 
 /// Disks of three grid steps across 49 directions, beside others two to four steps away. About 1.5 us a node and thread

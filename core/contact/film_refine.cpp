@@ -93,8 +93,7 @@ class Follower {
     const auto at_rim = [&](std::size_t i) { return rings.all[i].size() != rings.added[i].size(); };
     for (std::size_t i = 0; i < share_.size(); ++i) {
       if (follows.share[i] <= 0.0f || at_rim(i)) continue;
-      const bool second = std::any_of(rings.added[i].begin(), rings.added[i].end(), at_rim);
-      share_[i] = second ? 0.5f * follows.share[i] : follows.share[i];
+      share_[i] = follows.share[i];
     }
     find_near();
   }
@@ -138,6 +137,7 @@ class Follower {
 
   /// Where dips say little, the contact becomes smooth.
   void settle() {
+    if (!options_.rules.has(ContactRule::kSettle)) return;
     for (int round = 0; round < kSettleRounds; ++round) {
       std::vector<float> ways(mesh_.added.size(), 0.0f);
       each([&](std::size_t i) {
@@ -161,7 +161,9 @@ class Follower {
         bend += weight * glm::dot(off, normal_[i]);
         squares += weight * glm::dot(off, off);
       });
-      const float in_dent = options_.clays ? 0.0f : std::clamp(depths[i] - kDeep, 0.0f, 1.0f);
+      const float in_dent = options_.clays || !options_.rules.has(ContactRule::kRounding)
+                                ? 0.0f
+                                : std::clamp(depths[i] - kDeep, 0.0f, 1.0f);
       const float variance = options_.blur_variance + kLowPass + kRounding * in_dent;
       if (squares > 0.0f) ways[i] = -2.0f * variance * bend / squares;
     });
@@ -193,13 +195,18 @@ class Follower {
   void unfold() {
     constexpr int kMostRounds = 10;  // what goes back may fold its neighbours
     std::vector<bool> back(mesh_.added.size(), false);
+    std::vector<std::uint8_t> folded(mesh_.triangles.size());
     bool any = true;
     for (int round = 0; round < kMostRounds && any; ++round) {
       any = false;
-      for (const Triangle& t : mesh_.triangles) {
+      each_vertex(folded.size(), [&](std::size_t i) {
+        const Triangle& t = mesh_.triangles[i];
         const glm::vec3 now = area_vector(t, mesh_.added), before = area_vector(t, start_);
-        if (glm::dot(now, before) > kLeastCosine * glm::length(now) * glm::length(before)) continue;
-        for (const std::uint32_t v : t)
+        folded[i] = !(glm::dot(now, before) > kLeastCosine * glm::length(now) * glm::length(before));
+      });
+      for (std::size_t i = 0; i < folded.size(); ++i) {
+        if (folded[i] == 0) continue;
+        for (const std::uint32_t v : mesh_.triangles[i])
           if (v >= dual_.size() && !back[v - dual_.size()]) back[v - dual_.size()] = any = true;
       }
       for (std::size_t i = 0; i < back.size(); ++i)
@@ -286,7 +293,8 @@ void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::ve
     follower.spread();
   }
   follower.find_normals();
-  follower.move(follower.ways_out_of_the_hollow(), options.most + kMostHollow);
+  if (options.rules.has(ContactRule::kHollow))
+    follower.move(follower.ways_out_of_the_hollow(), options.most + kMostHollow);
   for (int round = 0; round < 2; ++round) {
     follower.find_normals();
     follower.spread();

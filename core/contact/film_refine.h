@@ -11,6 +11,7 @@
 #include "core/contact/dips.h"
 #include "core/contact/interface_mesh.h"
 #include "core/contact/interface_rings.h"
+#include "core/contact/rules.h"
 
 namespace dubsar {
 
@@ -23,6 +24,7 @@ struct FollowOptions {
   float most = 3.0f;            ///< steps that a vertex is moved to dips: cuts stop short of the tips of wedges
   float blur_variance = 0.42f;  ///< of the scan
   std::optional<ClayContrast> clays = std::nullopt;
+  ContactRules rules{};
 };
 
 /// Moves the added vertices. Dips that do not stand out of the noise, as parallel sheets in the clay on both sides show

@@ -2,13 +2,12 @@
 // Which vertices of the contact are neighbours.
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "core/contact/interface_mesh.h"
+#include "core/contact/vertex_fans.h"
 
 namespace dubsar {
 
@@ -41,13 +40,6 @@ class IdLists {
   std::vector<float> weights_;
 };
 
-/// The corners of a quadrilateral (interface_mesh.h), or all of them one where it is none any more.
-inline std::array<std::uint32_t, 4> corners_of_quad(const InterfaceMesh& mesh, std::uint32_t first) {
-  const Triangle &t = mesh.triangles[first], &u = mesh.triangles[first + 1];
-  if (t[0] != u[0] || t[2] != u[1]) return {t[0], t[0], t[0], t[0]};
-  return {t[0], t[1], t[2], u[2]};
-}
-
 /// Neighbours along edges, and across quadrilaterals along both diagonals, whichever of them divides it: else averages
 /// lean to one side, and a scan and its mirror image differ by a seventh of a step. A diagonal weighs a quarter of an
 /// edge: averages are as round and as wide as over six neighbours, which are an ellipse of the same area.
@@ -55,8 +47,9 @@ struct InterfaceRings {
   static constexpr float kDiagonal = 0.25f;
   IdLists all;    ///< of each added vertex, ids as in triangles, each once, rising
   IdLists added;  ///< those of them that were added, as indices into `mesh.added`
+  VertexFans fans;
 
-  InterfaceRings(const InterfaceMesh& mesh, std::uint32_t dual) {
+  InterfaceRings(const InterfaceMesh& mesh, std::uint32_t dual) : fans(mesh, dual) {
     struct Neighbour {
       std::uint32_t id;
       float weight;

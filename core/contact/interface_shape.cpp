@@ -21,17 +21,14 @@ namespace {
 constexpr int kEvidenceRounds = 25;
 /// Rings beside the surface where the dip may be that of its air. They count where there is nothing else.
 constexpr int kRim = 3;
-constexpr float kRimWeight = 0.02f, kRimStrength = 1.5f;
-constexpr float kMostStrength = 2.5f;  ///< of one vertex: the fringe of a pore is no film, however dark
+constexpr float kRimWeight = 0.02f, kRimMargin = 0.4f;  ///< at most, above plain clay
 /// Vertices of a film that is believed, and of a clear one; a wedge has 300 to 600, and chance makes no clear film.
 constexpr std::size_t kLeastFilm = 1500, kLeastClearFilm = 400;
-constexpr float kClear = 2.0f;
-/// Whole patches: how much more than clay without a film one has, at least and by vertices (deviations of the mean);
-/// then a piece of film may be small.
-constexpr float kLeastPatch = 400.0f, kPatchMargin = 0.3f, kPatchSigmas = 4.0f * kStrengthDeviation;
-constexpr std::size_t kLeastPatchFilm = 200;
-constexpr float kWithin = 1.2f;     ///< strength of a film in such a patch
-constexpr float kLeastStep = 0.5f;  ///< of the difference of the clays
+constexpr float kClearMargin = 0.9f;  ///< above plain clay
+/// Whole patches: how much more than clay without a film one has, at least and by vertices (deviations of the mean).
+constexpr float kPatchMargin = 0.3f, kPatchSigmas = 4.0f;
+constexpr float kWithinMargin = 0.1f;  ///< of a film in such a patch, above plain clay
+constexpr float kLeastStep = 0.5f;     ///< of the difference of the clays
 constexpr int kFilmRounds = 1;
 constexpr int kMembraneRounds = 200;
 
@@ -50,12 +47,14 @@ std::vector<bool> rim_of(const InterfaceRings& rings) {
   return rim;
 }
 
-std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings& rings) {
-  const std::vector<bool> rim = rim_of(rings);
+std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings& rings, const PlainClay& plain,
+                                 ContactRules rules) {
+  const std::vector<bool> rim = rules.has(ContactRule::kRim) ? rim_of(rings) : std::vector<bool>(rings.all.size());
   std::vector<std::array<float, 2>> weighed(mesh.strength.size());  // sum, weight
   for (std::size_t i = 0; i < weighed.size(); ++i) {
     const float weight = rim[i] ? kRimWeight : 1.0f;
-    weighed[i] = {weight * std::min(mesh.strength[i], rim[i] ? kRimStrength : kMostStrength), weight};
+    weighed[i] = {weight * (rim[i] ? std::min(mesh.strength[i], plain.strength + kRimMargin) : mesh.strength[i]),
+                  weight};
   }
   average_rings(rings, kEvidenceRounds, weighed);
   std::vector<float> mean(weighed.size());
@@ -67,7 +66,7 @@ std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings
 std::vector<float> mean_steps(const InterfaceMesh& mesh, const InterfaceRings& rings,
                               const std::vector<glm::vec3>& dual_positions, const BandDensity& density,
                               const ClayContrast& clays) {
-  const std::vector<glm::vec3> normals = area_normals(mesh, dual_positions);
+  const std::vector<glm::vec3> normals = area_normals(mesh, rings, dual_positions);
   const float low = std::min(clays.tablet, clays.envelope) - 2.0f * clays.deviation,
               high = std::max(clays.tablet, clays.envelope) + 2.0f * clays.deviation;
   std::vector<float> steps(mesh.added.size());
@@ -86,32 +85,37 @@ std::vector<float> mean_steps(const InterfaceMesh& mesh, const InterfaceRings& r
 
 /// Vertices of patches that are a film as a whole, as far as their mean can tell it: nothing was chosen in it, so that
 /// chance is small even where the patch is.
-std::vector<bool> film_patches(const InterfaceMesh& mesh, const InterfaceRings& rings) {
+std::vector<bool> film_patches(const InterfaceMesh& mesh, const InterfaceRings& rings, const PlainClay& plain,
+                               ContactRules rules) {
   const std::vector<bool> rim = rim_of(rings);
   std::vector<bool> film(rim.size(), false);
+  if (!rules.has(ContactRule::kFilmPatches)) return film;
   each_piece(rings, std::vector<bool>(rim.size(), true), [&](const std::vector<std::uint32_t>& patch) {
     float sum = 0.0f, count = 0.0f;
     for (const std::uint32_t v : patch)
       if (!rim[v]) {
-        sum += std::min(mesh.strength[v], kMostStrength);
+        sum += mesh.strength[v];
         count += 1.0f;
       }
-    if (count < kLeastPatch || sum < count * (kClayStrength + std::max(kPatchMargin, kPatchSigmas / std::sqrt(count))))
+    if (count < 1.0f ||
+        sum < count * (plain.strength + std::max(kPatchMargin, kPatchSigmas * plain.deviation / std::sqrt(count))))
       return;
     for (const std::uint32_t v : patch) film[v] = true;
   });
   return film;
 }
 
-void drop_small_films(const InterfaceRings& rings, const std::vector<float>& strength,
-                      const std::vector<bool>& in_film_patch, std::vector<std::uint8_t>& evidence) {
+void drop_small_films(const InterfaceRings& rings, const std::vector<float>& strength, const PlainClay& plain,
+                      ContactRules rules, std::vector<std::uint8_t>& evidence) {
+  if (!rules.has(ContactRule::kSmallFilms)) return;
   std::vector<bool> film(evidence.size());
   for (std::size_t i = 0; i < film.size(); ++i) film[i] = evidence[i] == kFilm;
   each_piece(rings, film, [&](const std::vector<std::uint32_t>& piece) {
     float sum = 0.0f;
     for (const std::uint32_t v : piece) sum += strength[v];
-    const bool clear = sum >= kClear * static_cast<float>(piece.size());
-    if (piece.size() < (in_film_patch[piece.front()] ? kLeastPatchFilm : clear ? kLeastClearFilm : kLeastFilm))
+    const bool clear = rules.has(ContactRule::kClearFilms) &&
+                       sum >= (plain.strength + kClearMargin) * static_cast<float>(piece.size());
+    if (piece.size() < (clear ? kLeastClearFilm : kLeastFilm))
       for (const std::uint32_t v : piece) evidence[v] = kInferred;
   });
 }
@@ -169,12 +173,14 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
                                           const BandDensity& density, const ShapeOptions& options) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
   const InterfaceRings rings(mesh, dual);
-  const std::vector<float> strength = mean_strength(mesh, rings);
+  const std::vector<float> strength = mean_strength(mesh, rings, options.plain, options.rules);
   std::vector<std::uint8_t> evidence(strength.size());
-  const std::vector<bool> in_film_patch = film_patches(mesh, rings);
+  const std::vector<bool> in_film_patch = film_patches(mesh, rings, options.plain, options.rules);
   for (std::size_t i = 0; i < evidence.size(); ++i)
-    evidence[i] = strength[i] >= (in_film_patch[i] ? kWithin : options.film_strength) ? kFilm : kInferred;
-  drop_small_films(rings, strength, in_film_patch, evidence);
+    evidence[i] = strength[i] >= options.plain.strength + (in_film_patch[i] ? kWithinMargin : options.film_margin)
+                      ? kFilm
+                      : kInferred;
+  drop_small_films(rings, strength, options.plain, options.rules, evidence);
   std::vector<bool> clay_step(evidence.size(), false);  // not a film: where one clay ends and the other begins
   if (options.clays) {
     const std::vector<float> steps = mean_steps(mesh, rings, dual_positions, density, *options.clays);
@@ -190,10 +196,10 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   std::vector<float> follows(evidence.size());
   for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? 1.0f : 0.0f;
   follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
-              {.blur_variance = options.blur_variance, .clays = options.clays});
+              {.blur_variance = options.blur_variance, .clays = options.clays, .rules = options.rules});
   std::vector<bool> film(evidence.size());
   for (std::size_t i = 0; i < film.size(); ++i) film[i] = evidence[i] == kFilm && !clay_step[i];
-  const std::vector<bool> doubtful = doubtful_dents(mesh, rings, dual_positions, film);
+  const std::vector<bool> doubtful = doubtful_dents(mesh, rings, dual_positions, film, options.plain, options.rules);
   for (std::size_t i = 0; i < evidence.size(); ++i)
     if (doubtful[i]) evidence[i] = kInferred;
   return evidence;

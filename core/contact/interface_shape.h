@@ -8,21 +8,24 @@
 #include "core/contact/clays.h"
 #include "core/contact/dips.h"
 #include "core/contact/interface_mesh.h"
+#include "core/contact/rules.h"
 
 namespace dubsar {
 
 struct ShapeOptions {
-  float film_strength = 1.4f;   ///< mean of dips from which on a film is believed
+  float film_margin = 0.3f;     ///< mean of dips above that of plain clay from which on a film is believed
   float most = 1.5f;            ///< steps that inferred contact is moved
   float blur_variance = 0.42f;  ///< of the scan
   std::optional<ClayContrast> clays = std::nullopt;
   float dip_deviation = 0.0f;  ///< density that a strength of 1 stands for; read where clays differ
+  PlainClay plain{};
+  ContactRules rules{};
 };
 
 /// Evidence of the added vertices (evidence.h): film where the strength of the dip, averaged far along the contact and
-/// without its rim, is at least `film_strength` over a region as large as a wedge, or where the clays differ and their
-/// densities around it say so, else inferred. Films are followed in the density (film_refine.h); what is inferred
-/// becomes a membrane between them and the surface, no farther than `most` steps from where it was.
+/// without its rim, is `film_margin` above that of plain clay over a region as large as a wedge, or where the clays
+/// differ and their densities around it say so, else inferred. Films are followed in the density (film_refine.h); what
+/// is inferred becomes a membrane between them and the surface, no farther than `most` steps from where it was.
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
                                           const BandDensity& density, const ShapeOptions& options);
 

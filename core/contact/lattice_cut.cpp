@@ -53,7 +53,6 @@ void LatticeCut::add_step_cost(std::uint32_t lower, std::uint32_t upper, std::ui
   b.beside[down] = place_[lower];
   a.residual[up] += cost;
   b.residual[down] += cost;
-  if (solved_) touched_.insert(touched_.end(), {place_[lower], place_[upper]});
 }
 
 void LatticeCut::add_tie(std::uint32_t from, std::uint32_t to, std::int32_t cost) {
@@ -379,20 +378,15 @@ void LatticeCut::solve_ranges(const std::vector<std::uint32_t>& starts, bool fir
 /// another block is looked at.
 Result<void> LatticeCut::solve(Progress& progress) {
   if (points_.empty()) return {};
-  if (!solved_) {
-    solve_ranges(first_, true, progress);
-    for (std::vector<std::uint32_t> starts = first_; starts.size() > 3 && !progress.cancelled();) {
-      starts = joined(starts);
-      solve_ranges(starts, false, progress);
-    }
+  solve_ranges(first_, true, progress);
+  for (std::vector<std::uint32_t> starts = first_; starts.size() > 3 && !progress.cancelled();) {
+    starts = joined(starts);
+    solve_ranges(starts, false, progress);
   }
   if (progress.cancelled()) return cancelled_error();
-  solved_ = true;
   Search search(*this, 0, static_cast<std::uint32_t>(points_.size()), time_, progress);
   search.wake(touched_);
-  touched_.clear();
   if (!search.run()) return cancelled_error();
-  time_ = search.time();
   return {};
 }
 

@@ -26,14 +26,13 @@ class LatticeCut {
     points_[place_[node]].terminal += cost_if_sink - cost_if_source;
   }
   /// Cost of separating neighbours, the same in both directions: `upper` is one step up the axis from `lower`; threads
-  /// may add those of different pairs at the same time. After solve() more of it may be added, by one thread, and
-  /// solve() finds the new cut from what flowed before, in a time that goes with what was added.
+  /// may add those of different pairs at the same time.
   void add_step_cost(std::uint32_t lower, std::uint32_t upper, std::uint32_t axis, std::int32_t cost);
-  /// The same for any two nodes, before the first solve(); meant for few of them.
+  /// The same for any two nodes; meant for few of them.
   void tie(std::uint32_t a, std::uint32_t b, std::int32_t cost);
 
-  /// Finds the cut. Nodes that fit either side equally well go to the sink side. Deterministic for any thread count.
-  /// 76 bytes a node. kCancelled.
+  /// Finds the cut, once. Nodes that fit either side equally well go to the sink side. Deterministic for any thread
+  /// count. 76 bytes a node. kCancelled.
   Result<void> solve(Progress& progress);
 
   bool on_source_side(std::uint32_t node) const noexcept { return points_[place_[node]].label > 0; }
@@ -70,10 +69,8 @@ class LatticeCut {
   std::vector<std::uint32_t> rising_;  ///< points of each block in the order of their heights
   std::vector<Tie> ties_;
   std::unordered_map<std::uint32_t, std::uint32_t> first_tie_;  ///< of the points that have some
-  bool solved_ = false;
-  std::uint32_t time_ = 0;              ///< of the search so far
-  std::vector<std::uint32_t> touched_;  ///< points from which more may be reached than when the search ended, rising
-                                        ///< where they are ends of ranges
+  std::uint32_t time_ = 0;                                      ///< of the search so far
+  std::vector<std::uint32_t> touched_;  ///< rising: points from which more may be reached than when the search ended
 };
 
 }  // namespace dubsar

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <unordered_map>
 
+#include "core/base/system/parallel_gather.h"
 #include "core/mesh/evidence.h"
 
 namespace dubsar {
@@ -14,10 +14,6 @@ namespace {
 constexpr float kVoteRim = 3.0f;     ///< steps from a patch within which the labels of faces are only a vote
 constexpr float kRimVote = 0.4f;     ///< for the label that a face has
 constexpr float kFacingVote = 0.6f;  ///< for the side that it looks like, times the cosine
-
-/// A hole that could as well be a pore is a pocket where so many others are within so many steps: wedges come in lines.
-constexpr int kCompany = 3;
-constexpr float kCompanyReach = 40.0f;
 
 /// Area vector towards the air.
 glm::vec3 area_vector(const QuadMesh& mesh, std::uint32_t quad) {
@@ -33,8 +29,6 @@ bool is_rest(const SurfaceModel& model, std::uint32_t quad) {
 struct RestPiece {
   std::vector<std::uint32_t> quads;
   double volume = 0.0;  ///< below 0: of air
-  double area = 0.0;
-  glm::vec3 middle{0.0f};
 };
 struct RestPieces {
   std::unordered_map<std::uint32_t, std::uint32_t> piece_of;  ///< by quad
@@ -49,21 +43,17 @@ RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const 
     const auto piece = static_cast<std::uint32_t>(pieces.all.size());
     std::vector<std::uint32_t> queue{face.quad};
     pieces.piece_of.emplace(face.quad, piece);
-    double volume = 0.0, area = 0.0;
-    glm::vec3 sum(0.0f);
+    double volume = 0.0;
     const glm::vec3 origin = graph.centre[face.quad];
     for (std::size_t i = 0; i < queue.size(); ++i) {
       const std::uint32_t f = queue[i];
       volume += static_cast<double>(glm::dot(graph.centre[f] - origin, graph.normal[f]) * graph.area[f]) / 3.0;
-      area += static_cast<double>(graph.area[f]);
-      sum += graph.centre[f] - origin;
       for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
         const std::uint32_t g = graph.neighbour[s];
         if (g != FaceGraph::kNone && pieces.piece_of.emplace(g, piece).second) queue.push_back(g);
       }
     }
-    const glm::vec3 middle = origin + sum / static_cast<float>(queue.size());
-    pieces.all.push_back({std::move(queue), volume, area, middle});
+    pieces.all.push_back({std::move(queue), volume});
   }
   return pieces;
 }
@@ -81,28 +71,20 @@ struct Extent {
   float across() const { return highest - lowest - 1.0f; }
 };
 
-/// As round as a bubble, or beside the patch and thin as straw or half as far from it as it is wide. The air in wedges
-/// 7 steps deep is not, in wedges of 4 steps half of it is.
-bool like_pore(const RestPiece& piece, const Extent& extent) {
-  constexpr double kRound = 0.85, kThin = 0.45;  // of a ball's volume for its area; steps
-  constexpr float kThrough = 1.0f, kNear = 0.5f;
-  const double ball = std::pow(piece.area, 1.5) / (6.0 * std::sqrt(std::numbers::pi));
-  if (-piece.volume > kRound * ball) return true;
-  return extent.away() > kThrough && (-piece.volume < kThin * piece.area || extent.away() > kNear * extent.across());
-}
-
 }  // namespace
 
 std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& index, const ContactBand& band) {
-  std::vector<BandFace> faces;
   const BitVolume& signs = model.samples.signs;
-  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-      for (const int sense : {-1, 1}) {
-        const glm::ivec3 p = band.point(n), q = p + sense * unit_step(axis), start = sense < 0 ? q : p;
-        if (!signs.get(q.x, q.y, q.z)) faces.push_back({index.quad_of(axis, start.x, start.y, start.z), n});
-      }
-  return faces;
+  return parallel_gather<BandFace>(
+      static_cast<std::int64_t>(band.nodes.size()), 1 << 14,
+      [&](std::int64_t begin, std::int64_t end, std::vector<BandFace>& faces) {
+        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
+          for (int axis = 0; axis < 3; ++axis)
+            for (const int sense : {-1, 1}) {
+              const glm::ivec3 p = band.point(n), q = p + sense * unit_step(axis), start = sense < 0 ? q : p;
+              if (!signs.get(q.x, q.y, q.z)) faces.push_back({index.quad_of(axis, start.x, start.y, start.z), n});
+            }
+      });
 }
 
 std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const FaceGraph& graph, const ContactBand& band,
@@ -116,19 +98,9 @@ std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const Fa
     extents[piece->second].add(band.nodes[face.node]);
     around[piece->second].push_back(face.node);
   }
-  std::vector<std::size_t> on;
-  for (std::size_t i = 0; i < around.size(); ++i)
-    if (pieces.all[i].volume < 0.0 && extents[i].away() <= extents[i].across()) on.push_back(i);
-  const auto alone = [&](std::size_t i) {
-    return std::count_if(on.begin(), on.end(), [&](std::size_t j) {
-             return glm::distance(pieces.all[i].middle, pieces.all[j].middle) < kCompanyReach;
-           }) <= kCompany;  // itself is one of them
-  };
   std::vector<ClayCavity> off;
   for (std::size_t i = 0; i < around.size(); ++i) {
-    if (pieces.all[i].volume >= 0.0) continue;
-    const bool beyond = extents[i].away() > extents[i].across();
-    if (!beyond && !(like_pore(pieces.all[i], extents[i]) && alone(i))) continue;
+    if (pieces.all[i].volume >= 0.0 || extents[i].away() <= extents[i].across()) continue;
     std::sort(around[i].begin(), around[i].end());
     around[i].erase(std::unique(around[i].begin(), around[i].end()), around[i].end());
     off.push_back(std::move(around[i]));

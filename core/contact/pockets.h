@@ -25,9 +25,7 @@ std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& 
 
 /// Closed cavities that do not open to the contact: pores of the clay. The mouth of a pocket lies where the clays meet,
 /// and the patches miss that by less than the pocket is deep; a cavity that is farther from every patch than it
-/// reaches across the contact is none. Nor is one that looks like a pore (round, thin, or half as far from the patch)
-/// without three others within 40 steps: wedges come in lines. By their first nodes; the same for
-/// any number of threads.
+/// reaches across the contact is none. By their first nodes; the same for any number of threads.
 std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const FaceGraph& graph, const ContactBand& band,
                                              const std::vector<BandFace>& faces);
 

@@ -10,9 +10,8 @@
 #include <map>
 #include <numeric>
 
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/contact/clay_sides.h"
-#include "core/contact/dents.h"
 #include "core/contact/dips.h"
 #include "core/filter/resample.h"
 
@@ -88,23 +87,34 @@ std::uint32_t next_clay(const ContactBand& band, const BitVolume& inside, std::u
 
 std::vector<Ground> grounds_of(const ContactBand& band, const BitVolume& inside, const Dips& dips,
                                const std::vector<ClaySide>& side) {
-  std::map<std::array<int, 3>, Cube> cubes;  // in order: sums do not depend on threads
   const glm::vec3 middle = middle_of(band.samples);
-  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis) {
-      if (std::abs(band.normal(n)[axis]) < kAcross) continue;
-      const std::uint32_t m = next_clay(band, inside, n, axis);
-      if (m == ContactBand::kNone || side[n] == side[m]) continue;
-      const glm::vec3& p = band.samples[band.nodes[n].sample].position;
-      const glm::ivec3 at(glm::round((p - middle) / kCubeSide));
-      Cube& cube = cubes[{at.x, at.y, at.z}];
-      const bool air = m != band.at(band.point(n) + unit_step(axis));
-      cube.heights.push_back(air ? 0.5f * (band.nodes[n].height + band.nodes[m].height)
-                                 : band.nodes[darkest_near(band, dips, n, axis)].height);
-      cube.strength +=
-          static_cast<double>(air ? kClayStrength + kAirBelief : 0.5f * (dips.strength[n] + dips.strength[m]));
-      cube.middle += glm::dvec3(p);
-    }
+  struct Crossing {
+    glm::vec3 place;
+    float height, strength;
+  };
+  const std::vector<Crossing> crossings = parallel_gather<Crossing>(
+      static_cast<std::int64_t>(band.nodes.size()), 1 << 14,
+      [&](std::int64_t begin, std::int64_t end, std::vector<Crossing>& crossed) {
+        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
+          for (int axis = 0; axis < 3; ++axis) {
+            if (std::abs(band.normal(n)[axis]) < kAcross) continue;
+            const std::uint32_t m = next_clay(band, inside, n, axis);
+            if (m == ContactBand::kNone || side[n] == side[m]) continue;
+            const bool air = m != band.at(band.point(n) + unit_step(axis));
+            crossed.push_back({band.samples[band.nodes[n].sample].position,
+                               air ? 0.5f * (band.nodes[n].height + band.nodes[m].height)
+                                   : band.nodes[darkest_near(band, dips, n, axis)].height,
+                               air ? dips.plain.strength + kAirBelief : 0.5f * (dips.strength[n] + dips.strength[m])});
+          }
+      });
+  std::map<std::array<int, 3>, Cube> cubes;  // in order: sums do not depend on threads
+  for (const Crossing& crossing : crossings) {
+    const glm::ivec3 at(glm::round((crossing.place - middle) / kCubeSide));
+    Cube& cube = cubes[{at.x, at.y, at.z}];
+    cube.heights.push_back(crossing.height);
+    cube.strength += static_cast<double>(crossing.strength);
+    cube.middle += glm::dvec3(crossing.place);
+  }
   std::vector<Ground> found;
   for (auto& entry : cubes) {
     Cube& cube = entry.second;
@@ -126,7 +136,7 @@ std::vector<Ground> grounds_of(const ContactBand& band, const BitVolume& inside,
       sum += weight * other.strength;
       weights += weight;
     });
-    const float above = sum / weights - kClayStrength;
+    const float above = sum / weights - dips.plain.strength;
     ground.belief = std::clamp((above - kLeastBelief) / (kFullBelief - kLeastBelief), 0.0f, 1.0f);
   }
   return found;
@@ -250,13 +260,13 @@ float move_along_normals(std::vector<PatchPoint>& samples, const std::vector<flo
 /// off is farther away than can be seen from it, and its film leads there. `look`: the ways of samples on a grid of
 /// `scale` steps.
 template <class Look>
-Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, const Look& look) {
-  constexpr int kMostLooks = 4;
+Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, ContactRules rules, const Look& look) {
+  const int most_looks = rules.has(ContactRule::kLooks) ? 4 : 1;
   constexpr float kFar = 0.5f * kReach;
   const std::vector<PatchPoint> before = samples;
   std::vector<PatchPoint> left_behind;
   Recentred recentred;
-  for (int k = 0; k < kMostLooks; ++k) {
+  for (int k = 0; k < most_looks; ++k) {
     recentred.density.reset();
     DUBSAR_ASSIGN(Ways ways, look(samples));
     recentred.density.emplace(std::move(ways.density));
@@ -271,18 +281,18 @@ Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, co
 }  // namespace
 
 Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                                   Progress& progress) {
+                                   Progress& progress, ContactRules rules) {
   constexpr int kRoom = 3;  // bricks: most samples move less than the reach, and are looked around as far then
-  return follow_films(samples, 1.0f, [&](const std::vector<PatchPoint>& from) {
+  return follow_films(samples, 1.0f, rules, [&](const std::vector<PatchPoint>& from) {
     return ways_to_films(from, inside, density, kRoom, progress);
   });
 }
 
 Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
-                                           SlabSource& density, Progress& progress) {
+                                           SlabSource& density, Progress& progress, ContactRules rules) {
   HalfResolutionSource half(density);
   const BitVolume inside_half = halved_signs(inside, half.dims());
-  DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 2.0f, [&](std::vector<PatchPoint> from) {
+  DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 2.0f, rules, [&](std::vector<PatchPoint> from) {
                   for (PatchPoint& sample : from) sample.position = halved(sample.position);
                   return ways_to_films(std::move(from), inside_half, half, 1, progress);
                 }));

@@ -9,6 +9,7 @@
 #include "core/base/result.h"
 #include "core/contact/band.h"
 #include "core/contact/dips.h"
+#include "core/contact/rules.h"
 #include "core/extract/bit_volume.h"
 #include "core/volume/slab_source.h"
 
@@ -26,11 +27,11 @@ struct Recentred {
 /// corner of the tablet off may be 30 steps from it. `inside`: the signs of the grid; `density`: the scan on it,
 /// unfiltered. Deterministic for any thread count. Errors of `density`, kCancelled.
 Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                                   Progress& progress);
+                                   Progress& progress, ContactRules rules = {});
 
 /// The same on a grid of half the resolution, for that of the scan: twice as far, an eighth of the points. About a
 /// third of what the contact takes afterwards, each time. Nothing is kept of what was read.
 Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
-                                           SlabSource& density, Progress& progress);
+                                           SlabSource& density, Progress& progress, ContactRules rules = {});
 
 }  // namespace dubsar

@@ -73,35 +73,42 @@ void average_rings(const InterfaceRings& around, int rounds, const std::vector<s
 }
 
 /// Normals of the added vertices, towards the envelope, as long as twice the area of the triangles around them, on
-/// average over both ways to divide each quadrilateral.
-inline std::vector<glm::vec3> area_normals(const InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions) {
+/// average over both ways to divide each quadrilateral. The same for any number of threads.
+inline std::vector<glm::vec3> area_normals(const InterfaceMesh& mesh, const InterfaceRings& rings,
+                                           const std::vector<glm::vec3>& dual_positions) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
   const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
-  std::vector<glm::vec3> normals(mesh.added.size(), glm::vec3(0.0f));
-  for (const Triangle& t : mesh.triangles) {
-    const glm::vec3 a = position(t[0]), n = glm::cross(position(t[1]) - a, position(t[2]) - a);
-    for (const std::uint32_t v : t)
-      if (v >= dual) normals[v - dual] += n;
-  }
-  // The corner triangle at the other end of a diagonal is what one division has there more than the other.
-  for (const std::uint32_t first : mesh.quads) {
-    const auto corner = corners_of_quad(mesh, first);
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (corner[k] < dual) continue;
+  std::vector<glm::vec3> areas(mesh.triangles.size()), normals(mesh.added.size());
+  each_vertex(areas.size(), [&](std::size_t i) {
+    const Triangle& t = mesh.triangles[i];
+    const glm::vec3 a = position(t[0]);
+    areas[i] = glm::cross(position(t[1]) - a, position(t[2]) - a);
+  });
+  each_vertex(normals.size(), [&](std::size_t i) {
+    glm::vec3 normal(0.0f);
+    for (const std::uint32_t t : rings.fans.triangles[i]) normal += areas[t];
+    // The corner triangle at the other end of a diagonal is what one division has there more than the other.
+    for (const std::uint32_t c : rings.fans.corners[i]) {
+      const std::size_t k = c % 4;
+      const auto corner = corners_of_quad(mesh, mesh.quads[c / 4]);
       const glm::vec3 a = position(corner[(k + 2) % 4]),
                       n = glm::cross(position(corner[(k + 3) % 4]) - a, position(corner[(k + 1) % 4]) - a);
-      normals[corner[k] - dual] += (k % 2 == 0 ? -0.5f : 0.5f) * n;
+      normal += (k % 2 == 0 ? -0.5f : 0.5f) * n;
     }
-  }
+    normals[i] = normal;
+  });
   return normals;
 }
 
 /// The same averaged, and of unit length, or 0 where they cancel out.
 inline std::vector<glm::vec3> unit_normals(const InterfaceMesh& mesh, const InterfaceRings& rings,
                                            const std::vector<glm::vec3>& dual_positions, int rounds) {
-  std::vector<glm::vec3> normals = area_normals(mesh, dual_positions);
+  std::vector<glm::vec3> normals = area_normals(mesh, rings, dual_positions);
   average_rings(rings, rounds, normals);
-  for (glm::vec3& n : normals) n = glm::length(n) > 0.0f ? glm::normalize(n) : glm::vec3(0.0f);
+  each_vertex(normals.size(), [&](std::size_t i) {
+    glm::vec3& n = normals[i];
+    n = glm::length(n) > 0.0f ? glm::normalize(n) : glm::vec3(0.0f);
+  });
   return normals;
 }
 

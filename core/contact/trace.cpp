@@ -13,7 +13,6 @@
 #include "core/contact/clay_sides.h"
 #include "core/contact/clays.h"
 #include "core/contact/dips.h"
-#include "core/contact/firmness.h"
 #include "core/contact/interface_mesh.h"
 #include "core/contact/interface_rest.h"
 #include "core/contact/interface_shape.h"
@@ -70,9 +69,7 @@ struct Traced {
   std::vector<ClayCavity> pores{};
   std::vector<SurfaceHint> hints{};
   std::vector<float> votes{};
-  std::optional<ClayDivision> division{};
   std::vector<ClaySide> side{};
-  std::vector<ClaySide> cut_side{};  ///< before it was made to step aside
   std::optional<ClayContrast> clays{};
   std::optional<LastAttempt> last{};
 };
@@ -119,19 +116,6 @@ Result<Laid> lay_contact(SurfaceModel& model, const Traced& traced, Progress& pr
   return laid;
 }
 
-/// Films are believed where the contact is firm. What follows two clays is no film.
-Result<void> doubt_films(const Laid& laid, Traced& traced, std::vector<std::uint8_t>& evidence, Progress& progress) {
-  const auto film = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
-  if (film == 0 || traced.clays) return {};
-  std::vector<glm::vec3> films;
-  for (std::size_t i = 0; i < evidence.size(); ++i)
-    if (evidence[i] == evidence_byte(Evidence::kFilm)) films.push_back(laid.mesh.added[i]);
-  DUBSAR_ASSIGN(const std::vector<bool> unfirm,
-                find_unfirm(traced.band, *traced.division, traced.cut_side, films, progress));
-  doubt_unfirm(traced.band, unfirm, laid.mesh.added, evidence);
-  return {};
-}
-
 /// Moves its vertices to where the scan shows it and stores it in the model.
 Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced, const ContactOptions& options,
                            ContactReport& report, Progress& progress) {
@@ -142,11 +126,9 @@ Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced
     known = traced.last->shape.shape(mesh);
     aside = traced.last->aside;
   } else {
-    known.evidence =
-        shape_interface(mesh, model.mesh.positions, traced.density,
-                        {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation});
-    DUBSAR_TRY(doubt_films(laid, traced, known.evidence, progress));
-    traced.division.reset();
+    known.evidence = shape_interface(mesh, model.mesh.positions, traced.density,
+                                     {options.film_margin, kMostMove, options.blur_variance, traced.clays,
+                                      traced.dips.deviation, traced.dips.plain, options.rules});
   }
   report.traced = true;
   report.pockets = laid.pockets;
@@ -250,9 +232,8 @@ Result<void> trace_labels(SurfaceModel& model, Traced& traced, const ContactOpti
                                       .faces = traced.faces,
                                       .pores = traced.pores,
                                       .side = traced.side,
-                                      .division = traced.clays ? nullptr : &*traced.division,
-                                      .shape = {options.film_strength, kMostMove, options.blur_variance, traced.clays,
-                                                traced.dips.deviation}},
+                                      .shape = {options.film_margin, kMostMove, options.blur_variance, traced.clays,
+                                                traced.dips.deviation, traced.dips.plain, options.rules}},
                                      progress));
   report.traced = true;
   report.pockets = labelled.pockets;
@@ -286,7 +267,7 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   }
   progress.begin("contact", 0, "step");
   const auto recentre = options.halve_first ? recentre_samples_at_half : recentre_samples;
-  DUBSAR_ASSIGN(Recentred recentred, recentre(samples, model.samples.signs, density, progress));
+  DUBSAR_ASSIGN(Recentred recentred, recentre(samples, model.samples.signs, density, progress, options.rules));
   log_debug("contact: looked for up to {:.1f} steps from the smooth patch", recentred.longest);
   DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   DUBSAR_ASSIGN(const BandDensity values, density_of(band, std::move(recentred.density), density, progress));
@@ -309,13 +290,9 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
              100.0f * traced.clays->envelope / traced.clays->tablet);
   }
   traced.pores = cavities_off_contact(model, graph, band, traced.faces);
-  for (ClayCavity& unseen : unseen_cavities(band, model.samples.signs, values, model.samples.isovalue))
-    traced.pores.push_back(std::move(unseen));
-  blind_fringes(band, traced.pores, dips);
+  if (options.rules.has(ContactRule::kFringes)) blind_fringes(band, traced.pores, dips);
   traced.hints = hints_of_faces(model, band, traced.faces, traced.pores);
-  traced.division.emplace(ClayEvidence{band, dips, traced.hints, traced.votes, traced.pores});
-  DUBSAR_ASSIGN(traced.side, traced.division->sides(progress));
-  traced.cut_side = traced.side;
+  DUBSAR_ASSIGN(traced.side, ClayDivision({band, dips, traced.hints, traced.votes, traced.pores}).sides(progress));
   if (progress.cancelled()) return cancelled_error();
   if (options.mesh == ContactMesh::kLabels) {
     DUBSAR_TRY(trace_labels(model, traced, options, report, progress));

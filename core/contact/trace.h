@@ -10,6 +10,7 @@
 #include "core/base/result.h"
 #include "core/base/text/enum_names.h"
 #include "core/extract/labelled/labelled_mesh.h"
+#include "core/contact/rules.h"
 #include "core/parts/surface_model.h"
 #include "core/parts/untangle.h"
 #include "core/volume/slab_source.h"
@@ -30,15 +31,17 @@ struct ContactOptions {
   /// Whether what the smooth patch has missed by more than the reach is looked for at half the density's resolution:
   /// at the scan's own.
   bool halve_first = true;
-  float reach = 12.0f;         ///< of the search from the smooth patch, grid steps: the deepest wedge
-  float out_reach = 8.0f;      ///< the same into the envelope, where the two clays are not seen to differ
-  double step = 1.0 / 64.0;    ///< positions are multiples of it, as in files
-  float film_strength = 1.4f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
+  float reach = 12.0f;       ///< of the search from the smooth patch, grid steps: the deepest wedge
+  float out_reach = 8.0f;    ///< the same into the envelope, where the two clays are not seen to differ
+  double step = 1.0 / 64.0;  ///< positions are multiples of it, as in files
+  /// Mean strength of dips around a vertex (dips.h) above that of plain clay from which on a film is believed.
+  float film_margin = 0.3f;
   /// Variance of the scan's edges, voxels squared (core/filter/edge_spread.h); this is that of a good scan.
   float blur_variance = 0.42f;
   /// Smaller differences of the two clays, grey values, say nothing: so uneven is what should be one density where rays
   /// were straightened.
   float least_clay_step = 0.0f;
+  ContactRules rules{};  ///< all but those that a bench switches off
 };
 
 struct ContactReport {

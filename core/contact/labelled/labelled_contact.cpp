@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/base/system/log.h"
-#include "core/contact/firmness.h"
 #include "core/contact/labelled/clay_labels.h"
 #include "core/contact/labelled/contact_sheet.h"
 #include "core/extract/labelled/labelled_mesh.h"
@@ -121,19 +120,6 @@ Sheet sheet_of(const ContactQuads& contact, const DividedClay& clay, const Conta
   return sheet;
 }
 
-/// What is a film, and where: moves the added vertices of the sheet.
-Result<std::vector<std::uint8_t>> shape_sheet(Sheet& sheet, const DividedClay& clay, Progress& progress) {
-  const std::vector<glm::vec3> cut = sheet.mesh.added;
-  std::vector<std::uint8_t> evidence = shape_interface(sheet.mesh, sheet.dual_positions, clay.density, clay.shape);
-  std::vector<glm::vec3> films;
-  for (std::size_t i = 0; i < evidence.size(); ++i)
-    if (evidence[i] == evidence_byte(Evidence::kFilm)) films.push_back(cut[i]);
-  if (clay.division == nullptr || films.empty()) return evidence;
-  DUBSAR_ASSIGN(const std::vector<bool> unfirm, find_unfirm(clay.band, *clay.division, clay.side, films, progress));
-  doubt_unfirm(clay.band, unfirm, cut, evidence);
-  return evidence;
-}
-
 /// The evidence of the nearest vertex of the sheet, by cubes of two steps.
 class NearestEvidence {
  public:
@@ -229,7 +215,8 @@ Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedC
                   build_contact_quads(model.samples, clay.index, labels, edges, quantised(along, bits)));
     sheet = sheet_of(cut, clay, edges, along);
   }
-  DUBSAR_ASSIGN(const std::vector<std::uint8_t> evidence, shape_sheet(sheet, clay, progress));
+  const std::vector<std::uint8_t> evidence =
+      shape_interface(sheet.mesh, sheet.dual_positions, clay.density, clay.shape);
   if (progress.cancelled()) return cancelled_error();
 
   // Labels and crossings of where it is now.

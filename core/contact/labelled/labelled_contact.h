@@ -26,7 +26,6 @@ struct DividedClay {
   const std::vector<BandFace>& faces;
   const std::vector<ClayCavity>& pores;
   const std::vector<ClaySide>& side;
-  ClayDivision* division = nullptr;  ///< asked once more which films are firm; null: all are
   ShapeOptions shape;
 };
 

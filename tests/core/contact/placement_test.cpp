@@ -162,7 +162,7 @@ struct PlacedFilm {
     SilentProgress progress;
     std::vector<PatchPoint> samples = patch(), before = samples;
     VolumeSource source(scan);
-    recentre(samples, inside, source, progress).value();
+    recentre(samples, inside, source, progress, {}).value();
     std::vector<float> ways;
     for (std::size_t i = 0; i < before.size(); ++i)
       ways.push_back(glm::dot(samples[i].position - before[i].position, before[i].normal));

@@ -92,40 +92,6 @@ TEST(CavitiesOffContact, APocketOnAPatchThatMissesItsMouthIsNone) {
   EXPECT_TRUE(cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces).empty());
 }
 
-/// So many small holes in a row, from 0.7 to 5.1 steps below the patch.
-CavityScene holes_in_a_row(int count) {
-  return CavityScene([count](const glm::vec3& p) {
-    float air = -1e3f;
-    for (int i = 0; i < count; ++i)
-      air = std::max(air, scene::ball(p, {22.2f + 6.5f * static_cast<float>(i), 32.1f, kPlane - 2.9f}, 2.2f));
-    return air;
-  });
-}
-
-TEST(CavitiesOffContact, AHoleThatIsRoundAsABubbleIsOneWhereItIsAlone) {
-  for (const int count : {1, 3}) {
-    const CavityScene scene = holes_in_a_row(count);
-    EXPECT_EQ(cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces).size(),
-              static_cast<std::size_t>(count));
-  }
-}
-
-TEST(CavitiesOffContact, HolesAmongThreeOthersAreNone) {
-  const CavityScene scene = holes_in_a_row(4);
-  EXPECT_TRUE(cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces).empty());
-}
-
-TEST(CavitiesOffContact, AStrawBesideThePatchIsOne) {
-  const CavityScene scene([](const glm::vec3& p) {  // 13 steps long, 1.8 thick, from 1.4 to 6.8 steps below the patch
-    const glm::vec3 a(26.0f, 31.3f, kPlane - 2.6f), b(37.5f, 33.2f, kPlane - 6.2f);
-    const float along = std::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0f, 1.0f);
-    return 0.9f - glm::distance(p, a + along * (b - a));
-  });
-  const auto off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);
-  ASSERT_EQ(off.size(), 1u);
-  EXPECT_GT(scene.heights(off[0]).second - scene.heights(off[0]).first, 4) << "wider than it is far from the patch";
-}
-
 TEST(KeepWhole, TheClayAtACavityIsOfOneSide) {
   const CavityScene scene(pore);
   const std::vector<ClayCavity> off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);

@@ -48,7 +48,7 @@ Moved moved(const Volume<float>& volume, decltype(recentre_samples)* recentre = 
   VolumeSource source(volume);
   SilentProgress progress;
   Moved out{0.0f, std::move(samples)};
-  out.told = recentre(out.samples, inside, source, progress).value().longest;
+  out.told = recentre(out.samples, inside, source, progress, {}).value().longest;
   return out;
 }
 

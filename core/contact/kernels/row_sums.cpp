@@ -1,7 +1,7 @@
-#include "core/contact/row_sums.h"
+#include "core/contact/kernels/row_sums.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "core/contact/row_sums.cpp"
+#define HWY_TARGET_INCLUDE "core/contact/kernels/row_sums.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -1,7 +1,7 @@
-#include "core/contact/dip_rows.h"
+#include "core/contact/kernels/dip_rows.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "core/contact/dip_rows.cpp"
+#define HWY_TARGET_INCLUDE "core/contact/kernels/dip_rows.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -1,0 +1,53 @@
+#pragma once
+// The rules of the contact that can be switched off one by one, to see what each is worth: ./do bench ablation.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/base/text/enum_names.h"
+
+namespace dubsar {
+
+enum class ContactRule : std::uint8_t {
+  kDents,        ///< a dent must prove itself (dents.h)
+  kFringes,      ///< dips beside pores say nothing (clay_cavities.h)
+  kSmallFilms,   ///< films are as large as a wedge (interface_shape.h)
+  kClearFilms,   ///< clear ones may be smaller (interface_shape.h)
+  kFilmPatches,  ///< patches that are a film as a whole (interface_shape.h)
+  kRim,          ///< dips beside free surface count less (interface_shape.h)
+  kSettle,       ///< where dips say little the contact becomes smooth (film_refine.h)
+  kRounding,     ///< tips of dents are followed farther (film_refine.h)
+  kHollow,       ///< out of the hollow of what is bent (film_refine.h)
+  kLooks,        ///< patches are moved to their ground more than once (recentre.h)
+};
+
+inline constexpr EnumName<ContactRule> kContactRules[] = {
+    {ContactRule::kDents, "dents"},
+    {ContactRule::kFringes, "fringes"},
+    {ContactRule::kSmallFilms, "small films"},
+    {ContactRule::kClearFilms, "clear films"},
+    {ContactRule::kFilmPatches, "film patches"},
+    {ContactRule::kRim, "rim"},
+    {ContactRule::kSettle, "settle"},
+    {ContactRule::kRounding, "rounding"},
+    {ContactRule::kHollow, "hollow"},
+    {ContactRule::kLooks, "looks"},
+};
+static_assert(names_all(kContactRules, static_cast<std::size_t>(ContactRule::kLooks) + 1));
+
+/// All of them but those that were switched off.
+class ContactRules {
+ public:
+  constexpr ContactRules without(ContactRule rule) const noexcept {
+    ContactRules fewer = *this;
+    fewer.off_ |= bit(rule);
+    return fewer;
+  }
+  constexpr bool has(ContactRule rule) const noexcept { return (off_ & bit(rule)) == 0; }
+
+ private:
+  static constexpr std::uint32_t bit(ContactRule rule) noexcept { return std::uint32_t{1} << static_cast<int>(rule); }
+  std::uint32_t off_ = 0;
+};
+
+}  // namespace dubsar
