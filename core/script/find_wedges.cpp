@@ -4,8 +4,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "core/base/numbers/median.h"
 #include "core/script/arrange_text.h"
 #include "core/script/usual_directions.h"
+#include "core/script/wedge_echoes.h"
 #include "core/script/wedge_measure.h"
 #include "core/script/wedge_width.h"
 
@@ -47,11 +49,16 @@ Result<WedgesFound> find_wedges(const TriMesh& mesh, const WedgeSearch& search, 
       relief.explain(1, kFindCost);
     }
     out.sides = sides;
-    for (const PlacedImprint& one : relief.placed()) {
+    const std::vector<PlacedImprint> placed = relief.placed();
+    std::vector<double> misfits;
+    for (const PlacedImprint& one : placed) misfits.push_back(one.misfit);
+    out.scale.misfit = median(misfits);
+    for (const PlacedImprint& one : placed) {
       ScriptWedge wedge = measured_wedge(one, out.scale);
       if (wedge.confidence < search.least_confidence) continue;
       out.wedges.push_back(wedge);
     }
+    drop_echoes(out.wedges);
     arrange_text(out.wedges, sides);
   }
   progress.end();

@@ -8,17 +8,22 @@
 namespace dubsar {
 
 double wedge_confidence(const PlacedImprint& placed, const WedgeScale& scale) {
-  // Halfway at three tenths of what a usual wedge explains; both bounds of depth from phantoms, where pores and half
-  // wedges beside a patch lie outside of them.
+  // Halfway at three tenths of what a usual wedge explains; bounds from phantoms: pores and half wedges beside a patch
+  // lie outside of those of depth, two heads drawn as one outside of that of width (of what is pressed, a hundredth is
+  // wider than 1.31).
   constexpr double kHalf = 0.0016, kWidth = 0.0003;
-  constexpr double kLeast = 0.4, kMost = 1.6, kNarrow = 0.55, kBroad = 1.75;
+  constexpr double kLeast = 0.4, kMost = 1.6, kNarrow = 0.55, kBroad = 1.4;
+  // Misfits of what is pressed lie below 2.3 usual ones in nineteen of twenty, those of a half of what is not
+  // above 2.5.
+  constexpr double kUnlike = 4.0;
   const double explains = 1.0 / (1.0 + std::exp(-(placed.gain - kHalf) / kWidth));
   const double depth = placed.depth / scale.usual().depth, width = placed.imprint.width();
   const auto within = [](double v, double least, double most) {
     return 1.0 / (1.0 + std::pow(std::max({least / std::max(v, 1e-3), v / most, 1e-3}), 12.0));
   };
+  const double unlike = scale.misfit > 0.0 ? std::pow(placed.misfit / (kUnlike * scale.misfit), 4.0) : 0.0;
   const double unsure = 0.1 * std::exp(-std::max(0.0, placed.margin) / 4e-5);  // it may as well point another way
-  return explains * within(depth, kLeast, kMost) * within(width, kNarrow, kBroad) * (1.0 - unsure);
+  return explains * within(depth, kLeast, kMost) * within(width, kNarrow, kBroad) * (1.0 - unsure) / (1.0 + unlike);
 }
 
 ScriptWedge measured_wedge(const PlacedImprint& placed, const WedgeScale& scale) {
