@@ -39,6 +39,8 @@ usage() {
               ./do bench wedges [--quick | --size XxYxZ] [--seed N]: what is read of a hidden tablet, beside what is wanted
               ./do bench ablation [--size XxYxZ] [--seed N] [--seeds COUNT]: what each rule of the contact is worth, with the spread
               ./do bench invariance [--seeds N]: the same object cropped, mirrored, with axes exchanged: how far answers lie apart
+              ./do bench script [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS]: wedges that are found and drawn, beside what was pressed
+              ./do bench crossings FILE.exa...: pairs of triangles that cross or touch, partition by partition
               ./do bench wedges --scanner [--size XxYxZ] [--seed N] [--seeds COUNT]: the same of scans with an X-ray scanner's artefacts
               ./do bench light: from the start of a kiosk to its first picture, 1.6 million vertices on 48 views
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
@@ -296,6 +298,16 @@ bench() {
     "$build/tests/bench/ablation_bench" "${@:2}"
     return
   fi
+  if [ "${1:-}" = script ]; then
+    build_target --target script_bench
+    "$build/tests/bench/script_bench" "${@:2}"
+    return
+  fi
+  if [ "${1:-}" = crossings ]; then
+    build_target --target crossing_rows
+    "$build/tests/bench/crossing_rows" "${@:2}"
+    return
+  fi
   build_target --target dubsar_bench
   local filter=()
   if [ "${1:-}" = displays ]; then
@@ -366,7 +378,7 @@ soak() {
 
 # Those of sessions are made anew by a test, too, and compared.
 pictures() {
-  deps
+  deps librsvg2-bin
   build_target --target dubsar
   local dubsar=$build/app/dubsar work=$build/strips
   mkdir -p "$work"
@@ -375,6 +387,10 @@ pictures() {
   "$dubsar" render "$work/tablet.exa" -o docs/tablet.png --partition tablet --style raking --light 315,20 --size 900x900
   "$dubsar" render "$work/tablet.exa" -o docs/msii.png --partition tablet --style msii --size 900x900
   "$dubsar" fatcross "$work/tablet.exa" -o docs/fatcross.png --dpi 240 --no-sides
+  [ -f "$work/wedges.h5" ] || "$dubsar" phantom "$work/wedges.h5" --size 320x192x304 --seed 101 --wedge-depth 7
+  [ -f "$work/wedges.exa" ] || "$dubsar" process "$work/wedges.h5" -o "$work/wedges.exa"
+  "$dubsar" handcopy "$work/wedges.exa" -o "$work/handcopy.svg"
+  rsvg-convert --dpi-x 300 --dpi-y 300 --background-color white -w 700 "$work/handcopy.svg" -o docs/handcopy.png
   docs/scripts/make_pictures.sh "$dubsar" docs
   docs/scripts/make_contact_pictures.sh "$dubsar" docs
 }

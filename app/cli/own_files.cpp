@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "core/base/files/input_file.h"
+#include "core/base/files/sealed_text.h"
 #include "core/base/text/json_text.h"
 #include "core/exa/container.h"
 #include "core/hdf5/hdf5_file.h"
@@ -66,12 +67,23 @@ bool is_own_glb(const InputFile& file) {
   return has(piece(file, 20, std::min(bytes, kJsonMost)), R"("generator":"dubsar")");
 }
 
+constexpr std::int64_t kEditionMost = 256 << 20;
+
+/// A drawing or table with our mark: ours as long as nobody changed it.
+Found edition(const InputFile& file, std::string_view what) {
+  const bool unchanged = is_sealed_text(piece(file, 0, kEditionMost));
+  return {unchanged ? std::string(what) : fmt::format("{} that was changed since dubsar wrote it", what),
+          FileFormat::kEdition, unchanged};
+}
+
 /// JSON that a verb wrote as its result says so; an empty object or list is no loss.
 bool is_own_json(const InputFile& file) {
-  const auto json = parse_json(piece(file, 0, kJsonMost), "");
+  const std::string text = piece(file, 0, kJsonMost);
+  const auto json = parse_json(text, "");
   if (!json || file.size() > kJsonMost) return false;
   if ((json->is_object() || json->is_array()) && json->empty()) return true;
   if (!json->is_object() || !json->contains("made_by")) return false;
+  if (json->contains("checksum") && !is_sealed_text(text)) return false;  // of wedges that somebody corrected
   const nlohmann::json& by = json->at("made_by");
   return by.is_string() && by.get<std::string>().starts_with("dubsar");
 }
@@ -95,13 +107,12 @@ Found found_in(const InputFile& file) {
   if (begins("PK\x03\x04")) return {"an archive that dubsar did not write", kMesh, tail.ends_with("made by dubsar")};
   if (begins("dubsar STL, units ")) return {"an STL mesh", kMesh, true};
   if (begins("# made by dubsar")) return {"an OBJ mesh", kMesh, true};
-  if (begins("id,side,column,line,order,kind,head_x,")) return {"a table of wedges", FileFormat::kEdition, true};
-  if (begins("<?xml") && has(head, "\n<!-- made by dubsar; one unit is one mm -->"))
-    return {"a hand copy", FileFormat::kEdition, true};
-  if (begins("%PDF-"))
-    return {"a PDF file that dubsar did not write", FileFormat::kEdition,
-            has(head.substr(0, 64), "\n% made by dubsar\n")};
-  if (begins("999\nmade by dubsar")) return {"a hand copy", FileFormat::kEdition, true};
+  if (begins("id,side,column,line,order,kind,head_x,")) return edition(file, "a table of wedges");
+  if (begins("<?xml") && has(head, "\n<!-- made by dubsar; one unit is one mm; sum_"))
+    return edition(file, "a hand copy");
+  if (begins("%PDF-") && has(head.substr(0, 64), "\n% made by dubsar, sum_")) return edition(file, "a hand copy");
+  if (begins("%PDF-")) return {"a PDF file that dubsar did not write", FileFormat::kEdition, false};
+  if (begins("999\nmade by dubsar")) return edition(file, "a hand copy");
   if (begins("{") && has(head.substr(0, head.find('\n')), R"("polled":)"))
     return {"a recording", FileFormat::kOther, true};
   const std::size_t text = head.find_first_not_of(" \t\r\n");

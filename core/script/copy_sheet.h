@@ -43,6 +43,8 @@ struct CopySheet {
   std::vector<CopyLayer> layers;
 };
 
+// All three are sealed (core/base/files/sealed_text.h), so that a corrected one is told from ours.
+
 /// Layers as groups that Inkscape takes as layers; one user unit is one mm; presentation attributes, no styles.
 std::string svg_of(const CopySheet& sheet);
 /// One page, 1:1, vectors; Helvetica for texts. Layers are optional content.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/files/sealed_text.h"
 #include "core/script/copy_sheet.h"
 
 namespace dubsar {
@@ -27,11 +28,11 @@ std::string dxf_path(const CopyPath& path, const std::string& layer, double heig
 
 std::string dxf_of(const CopySheet& sheet) {
   std::string out = fmt::format(
-      "999\nmade by dubsar, unit "
-      "mm\n0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$EXTMIN\n10\n"
+      "999\nmade by dubsar, unit mm, "
+      "{}\n0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$EXTMIN\n10\n"
       "0.0\n20\n0.0\n9\n$EXTMAX\n10\n{:.4f}\n20\n{:.4f}\n0\nENDSEC\n0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n{}"
       "\n",
-      sheet.width_mm, sheet.height_mm, sheet.layers.size());
+      kUnsealed, sheet.width_mm, sheet.height_mm, sheet.layers.size());
   for (const CopyLayer& layer : sheet.layers)
     out += fmt::format("0\nLAYER\n2\n{}\n70\n0\n62\n7\n6\nCONTINUOUS\n", dxf_name(layer.id));
   out += "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
@@ -48,7 +49,7 @@ std::string dxf_of(const CopySheet& sheet) {
                          sheet.height_mm - t.at.y, t.size_mm, text);
     }
   }
-  return out + "0\nENDSEC\n0\nEOF\n";
+  return sealed_text(out + "0\nENDSEC\n0\nEOF\n");
 }
 
 }  // namespace dubsar

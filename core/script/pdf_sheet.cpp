@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/base/files/sealed_text.h"
 #include "core/script/copy_sheet.h"
 
 namespace dubsar {
@@ -83,7 +84,7 @@ std::string pdf_of(const CopySheet& sheet) {
       fmt::format("<< /Title ({}) /Creator (dubsar) /Producer (dubsar) >>", pdf_text(sheet.title))};
   for (const CopyLayer& layer : sheet.layers)
     objects.push_back(fmt::format("<< /Type /OCG /Name ({}) >>", pdf_text(layer.label)));
-  std::string out = "%PDF-1.5\n% made by dubsar\n";
+  std::string out = fmt::format("%PDF-1.5\n% made by dubsar, {}\n", kUnsealed);
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < objects.size(); ++k) {
     places.push_back(out.size());
@@ -92,8 +93,9 @@ std::string pdf_of(const CopySheet& sheet) {
   const std::size_t table = out.size();
   out += fmt::format("xref\n0 {}\n0000000000 65535 f \n", objects.size() + 1);
   for (const std::size_t place : places) out += fmt::format("{:010} 00000 n \n", place);
-  return out + fmt::format("trailer\n<< /Size {} /Root 1 0 R /Info 6 0 R >>\nstartxref\n{}\n%%EOF\n",
-                           objects.size() + 1, table);
+  out +=
+      fmt::format("trailer\n<< /Size {} /Root 1 0 R /Info 6 0 R >>\nstartxref\n{}\n%%EOF\n", objects.size() + 1, table);
+  return sealed_text(std::move(out));
 }
 
 }  // namespace dubsar

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/base/files/sealed_text.h"
 #include "core/base/text/markup_text.h"
 #include "core/script/copy_sheet.h"
 
@@ -37,8 +38,8 @@ std::string svg_of(const CopySheet& sheet) {
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" "
       "version=\"1.1\" width=\"{0:.3f}mm\" height=\"{1:.3f}mm\" viewBox=\"0 0 {0:.3f} {1:.3f}\">\n"
-      "<!-- made by dubsar; one unit is one mm -->\n<title>{2}</title>\n<desc>{3}</desc>\n",
-      sheet.width_mm, sheet.height_mm, markup_text(sheet.title), markup_text(sheet.description));
+      "<!-- made by dubsar; one unit is one mm; {4} -->\n<title>{2}</title>\n<desc>{3}</desc>\n",
+      sheet.width_mm, sheet.height_mm, markup_text(sheet.title), markup_text(sheet.description), kUnsealed);
   for (const CopyLayer& layer : sheet.layers) {
     out += fmt::format("<g id=\"{}\" class=\"layer {}\" inkscape:groupmode=\"layer\" inkscape:label=\"{}\">\n",
                        markup_text(layer.id), markup_text(layer.classes), markup_text(layer.label));
@@ -53,7 +54,7 @@ std::string svg_of(const CopySheet& sheet) {
     for (const CopyText& text : layer.texts) out += svg_label(text, " ");
     out += "</g>\n";
   }
-  return out + "</svg>\n";
+  return sealed_text(out + "</svg>\n");
 }
 
 }  // namespace dubsar

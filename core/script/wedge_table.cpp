@@ -4,17 +4,19 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/files/sealed_text.h"
+
 namespace dubsar {
 
 std::string wedges_csv(std::span<const ScriptWedge> wedges) {
-  std::string out = fmt::format("{}\n", kWedgeColumns);
+  std::string out = fmt::format("{},{}\n", kWedgeColumns, kUnsealed);
   const auto point = [](const glm::dvec3& p) { return fmt::format("{:.4f},{:.4f},{:.4f}", p.x, p.y, p.z); };
   for (const ScriptWedge& w : wedges)
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.1f},,{:.3f},{}\n", w.order,
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.1f},,{:.3f},{},\n", w.order,
                        name_in(kTextSides, w.side), w.column, w.line, w.order, name_in(kWedgeKinds, w.kind),
                        point(w.head_mm), point(w.tip_mm), point(w.tail_mm), point(w.normal), w.depth_mm, w.length_mm,
                        w.width_mm, w.opening_deg, w.confidence, name_in(kEvidences, w.evidence));
-  return out;
+  return sealed_text(std::move(out));
 }
 
 std::string wedges_json(const WedgesFound& found, const std::string& made_by) {
@@ -23,6 +25,7 @@ std::string wedges_json(const WedgesFound& found, const std::string& made_by) {
     return nlohmann::json::array({rounded(p.x, 1e4), rounded(p.y, 1e4), rounded(p.z, 1e4)});
   };
   nlohmann::ordered_json out{{"made_by", made_by},
+                             {"checksum", kUnsealed},
                              {"unit", "mm"},
                              {"frame", "of the scan: voxel index times voxel size"},
                              {"usual_width_mm", rounded(found.scale.width_mm, 1e4)},
@@ -49,7 +52,7 @@ std::string wedges_json(const WedgesFound& found, const std::string& made_by) {
                              {"confidence", rounded(w.confidence, 1e3)},
                              {"evidence", name_in(kEvidences, w.evidence)},
                              {"source", "machine"}});
-  return out.dump(1) + "\n";
+  return sealed_text(out.dump(1) + "\n");
 }
 
 }  // namespace dubsar

@@ -14,7 +14,8 @@ inline constexpr const char* kWedgeColumns =
     "length_mm,width_mm,opening_deg,pressed_after,confidence,evidence";
 
 /// One row a wedge in the order of reading, lines end with LF, numbers with a point whatever the locale; mm in the
-/// frame of the scan. pressed_after stays empty: it is not known.
+/// frame of the scan. The last column, empty in all rows, has the seal of the text as its name (sealed_text.h), so that
+/// a table that somebody corrected is told from ours. pressed_after stays empty: it is not known.
 std::string wedges_csv(std::span<const ScriptWedge> wedges);
 /// The same fields as objects under "wedges", with what is usual and how the tablet lies. `made_by`: program, version.
 std::string wedges_json(const WedgesFound& found, const std::string& made_by);

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <glm/geometric.hpp>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -21,16 +22,17 @@ namespace {
 
 constexpr std::string_view kHelp =
     "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--envelope] [--keep DIR]\n"
-    "             [--each]\n"
+    "             [--each] [--subdivide TIMES]\n"
     "  --depth     of a usual wedge (7)\n"
     "  --envelope  judges the envelope's outside instead of the tablet\n"
     "  --keep      surfaces are kept in this folder, and taken from there the next time\n"
+    "  --subdivide each triangle becomes four, so many times: how cost grows with triangles alone\n"
     "  --each      says of each wedge drawn what was pressed there, and what was missed\n";
 
 struct ScriptArguments {
   Dims dims{320, 192, 304};
   std::uint64_t seed = 1;
-  int seeds = 1;
+  int seeds = 1, subdivide = 0;
   double depth = 7.0;
   bool unwritten = false, envelope = false, each = false;
   std::string keep;
@@ -57,6 +59,8 @@ ScriptArguments parse_script(int argc, char** argv) {
       a.seed = std::strtoull(value, nullptr, 10);
     } else if (word == "--seeds") {
       a.seeds = std::atoi(value);
+    } else if (word == "--subdivide") {
+      a.subdivide = std::atoi(value);
     } else if (word == "--depth") {
       a.depth = std::atof(value);
     } else if (word == "--keep") {
@@ -95,6 +99,29 @@ SurfaceModel surface_of(const phantom::PhantomOptions& options, const std::strin
   SurfaceModel model = std::move(script_value(std::move(result)).model);
   if (!keep.empty()) script_value(write_exa(kept, model, progress));
   return model;
+}
+
+/// Each triangle as four, by the middles of its edges.
+void subdivide(TriMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    const auto [at, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.positions.size()));
+    if (fresh) {
+      mesh.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
+      if (!mesh.evidence.empty()) mesh.evidence.push_back(std::max(mesh.evidence[a], mesh.evidence[b]));
+    }
+    return at->second;
+  };
+  std::vector<Triangle> fine;
+  std::vector<std::uint8_t> inferred;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    fine.insert(fine.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    if (!mesh.triangle_inferred.empty()) inferred.insert(inferred.end(), 4, mesh.triangle_inferred[t]);
+  }
+  mesh.triangles = std::move(fine);
+  mesh.triangle_inferred = std::move(inferred);
 }
 
 void print_each(const phantom::Phantom& truth, const WedgesFound& found, const WedgeScore& score) {
@@ -140,10 +167,10 @@ int run_script(int argc, char** argv) {
     options.written = !a.unwritten;
     const auto truth = script_value(phantom::Phantom::create(options));
     const SurfaceModel model = surface_of(options, a.keep, progress);
-    const TriMesh mesh = a.envelope
-                             ? script_value(make_tri_mesh(
-                                   model, {.partition = model.partitions.find(PartitionKind::kEnvelopeOutside)->id}))
-                             : script_value(make_tri_mesh(model, {.body = "tablet"}));
+    TriMesh mesh = a.envelope ? script_value(make_tri_mesh(
+                                    model, {.partition = model.partitions.find(PartitionKind::kEnvelopeOutside)->id}))
+                              : script_value(make_tri_mesh(model, {.body = "tablet"}));
+    for (int time = 0; time < a.subdivide; ++time) subdivide(mesh);
     const auto start = std::chrono::steady_clock::now();
     const WedgesFound found = script_value(find_wedges(mesh, {}, progress));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

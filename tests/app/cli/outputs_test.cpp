@@ -129,6 +129,22 @@ TEST_F(Outputs, FilesOfAnotherKindStay) {
   EXPECT_FALSE(fs::exists(at("x.png")));
 }
 
+// A table or drawing is replaced by a new one of ours, and stays once somebody corrected it.
+TEST_F(Outputs, CorrectedTablesAndDrawingsStay) {
+  for (const char* name : {"w.csv", "w.json", "copy.svg", "copy.pdf", "copy.dxf"}) {
+    const std::string verb = name[0] == 'w' ? "wedges" : "handcopy", out = at(name);
+    ASSERT_EQ(run_dubsar({verb, at("tablet.exa"), "-o", out, "-q"}).exit_code, 0) << name;
+    ASSERT_EQ(run_dubsar({verb, at("tablet.exa"), "-o", out, "-q"}).exit_code, 0) << name << ": ours was not replaced";
+    auto text = read_text_file(out, 64 << 20);
+    ASSERT_TRUE(text);
+    const std::size_t digit = text->find_last_of("0123456789");
+    (*text)[digit] = (*text)[digit] == '1' ? '2' : '1';
+    ASSERT_TRUE(write_file_atomically(out, *text));
+    refused({verb, at("tablet.exa"), "-o", out}, 73, name, "would be lost");
+    EXPECT_EQ(*read_text_file(out, 64 << 20), *text);
+  }
+}
+
 // Whatever dubsar itself did not write stays, also under names that nobody typed.
 TEST_F(Outputs, FilesOfOthersStayWhateverTheyAre) {
   // A gray slice of 2 x 1 pixels, as of a scan; PNG and JPEG of somebody, meshes of other programs, a raw volume,

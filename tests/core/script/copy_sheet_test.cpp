@@ -9,6 +9,8 @@
 #include <regex>
 #include <string>
 
+#include "core/base/files/sealed_text.h"
+
 namespace dubsar {
 namespace {
 
@@ -42,6 +44,16 @@ TEST(CopySheet, SvgIsAtTrueScale) {
             std::string::npos);
   EXPECT_NE(svg.find("AO 8295 &lt;obverse&gt; &amp; more"), std::string::npos);
   EXPECT_NE(svg.find(R"(inkscape:groupmode="layer" inkscape:label="obverse vertical")"), std::string::npos);
+}
+
+TEST(CopySheet, AChangedDrawingIsToldFromOurs) {
+  for (const auto& write : {svg_of, pdf_of, dxf_of}) {
+    std::string text = write(ten_mm());
+    EXPECT_TRUE(is_sealed_text(text));
+    const std::size_t number = text.rfind("10.0") != std::string::npos ? text.rfind("10.0") : text.size() / 2;
+    text[number] = text[number] == '1' ? '3' : '1';  // a corner moved
+    EXPECT_FALSE(is_sealed_text(text));
+  }
 }
 
 TEST(CopySheet, PdfIsOnePageAtTrueScale) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/base/files/sealed_text.h"
 #include "core/script/arrange_text.h"
 
 namespace dubsar {
@@ -31,17 +32,19 @@ TEST(WedgeTable, ARowHasAValueForEachColumn) {
   const std::vector<ScriptWedge> wedges{one_wedge()};
   const std::string csv = wedges_csv(wedges);
   const std::string head = csv.substr(0, csv.find('\n')), row = csv.substr(csv.find('\n') + 1);
-  EXPECT_EQ(head, kWedgeColumns);
+  EXPECT_TRUE(head.starts_with(kWedgeColumns));
+  EXPECT_TRUE(is_sealed_text(csv));
   EXPECT_EQ(std::count(row.begin(), row.end(), ','), std::count(head.begin(), head.end(), ','));
   EXPECT_TRUE(row.starts_with("17,reverse,1,3,17,vertical,1.5000,-2.2500,3.0000,"));
-  EXPECT_TRUE(row.ends_with(",0.800,4.0000,2.0000,0.0,,0.900,measured\n") ||
-              row.ends_with(",0.8000,4.0000,2.0000,0.0,,0.900,measured\n"));
+  EXPECT_TRUE(row.ends_with(",0.800,4.0000,2.0000,0.0,,0.900,measured,\n") ||
+              row.ends_with(",0.8000,4.0000,2.0000,0.0,,0.900,measured,\n"));
 }
 
 TEST(WedgeTable, JsonSaysTheSame) {
   WedgesFound found;
   found.wedges = {one_wedge()};
   const auto json = nlohmann::json::parse(wedges_json(found, "dubsar 1"));
+  EXPECT_TRUE(is_sealed_text(wedges_json(found, "dubsar 1")));
   EXPECT_EQ(json["made_by"], "dubsar 1");
   EXPECT_EQ(json["wedges"][0]["kind"], "vertical");
   EXPECT_EQ(json["wedges"][0]["head"][1], -2.25);
