@@ -12,11 +12,11 @@ constexpr GLint kLayer = 0, kPlace = 1, kRing = 2;  // shaders/lens.frag
 constexpr double kRingShare = 0.028;                // of the view's height
 constexpr int kProbe = 8192;                        // places across the window that the pointer tells apart
 
-struct DecorPoint {
+struct DecorPlace {
   double x = 0.0, y = 0.0;  ///< pixels from the lower left corner
   bool before = false;      ///< the eye is not behind it
 };
-DecorPoint project(const View& view, const glm::dvec3& world, const ViewArray& array) {
+DecorPlace decor_place(const View& view, const glm::dvec3& world, const ViewArray& array) {
   const glm::dvec4 clip = view.clip_from_world() * glm::dvec4(world, 1.0);
   if (!(clip.w > 0)) return {};
   return {(0.5 + 0.5 * clip.x / clip.w) * array.width(), (0.5 + 0.5 * clip.y / clip.w) * array.height(), true};
@@ -48,7 +48,7 @@ Result<void> Stage::Parts::paint_decor(ViewArray& array) {
   for (int layer = 0; layer < array.layers(); ++layer) {
     const View& view = painted.views[static_cast<std::size_t>(layer)];
     if (decor.shown.lens) {
-      const DecorPoint middle = project(view, at(decor.shown.lens->at_mm), array);
+      const DecorPlace middle = decor_place(view, at(decor.shown.lens->at_mm), array);
       const int seen = std::max(2, static_cast<int>(std::lround(side / decor.shown.lens->factor)));
       const View part =
           crop_view(view, static_cast<int>(std::lround(middle.x - 0.5 * seen)),
@@ -59,7 +59,7 @@ Result<void> Stage::Parts::paint_decor(ViewArray& array) {
       }
     }
     if (decor.shown.cursor_mm) {
-      const DecorPoint middle = project(view, at(*decor.shown.cursor_mm), array);
+      const DecorPlace middle = decor_place(view, at(*decor.shown.cursor_mm), array);
       const int ring = std::max(9, static_cast<int>(kRingShare * array.height()));
       if (middle.before) DUBSAR_TRY(stamp(array, layer, {middle.x - 0.5 * ring, middle.y - 0.5 * ring}, ring, true));
     }

@@ -45,7 +45,6 @@ void Steering::steer(TimestampNs now) {
   const KeptPerson person = people_.update(steered_, frame);
   navigator_.update(steered_, frame, person.hands, person.standing);
   if (person.head) head_.add(*person.head, steered_);
-  if (navigator_.selected_m()) since_.selected_m = navigator_.selected_m();
   since_.hands = hand_marks(frame, person, navigator_.hands(), zone_);
   for (const GestureRecognizer& hand : navigator_.hands())
     for (const GestureEvent& event : hand.events()) since_.swiped = since_.swiped || event.kind == GestureKind::kSwipe;
@@ -84,7 +83,6 @@ std::vector<TouchFrame> Steering::take_touches() {
 Steered Steering::look(TimestampNs now, TimestampNs display_time) {
   const std::scoped_lock lock(mutex_);
   Steered out = since_;
-  since_.selected_m.reset();
   since_.swiped = false;
   out.view = navigator_.view();
   out.control = navigator_.control();

@@ -26,7 +26,6 @@ struct Steered {
   FollowedEyes eyes{};                     ///< at the time when the picture will be seen
   std::vector<HandMark> hands{};           ///< everybody's
   bool swiped = false;                     ///< a hand did since the last one
-  std::optional<glm::dvec3> selected_m{};  ///< a dwelling hand chose this place since the last one
   std::optional<TimestampNs> input_age{};  ///< of the newest measurement; none: nothing new since the last one
 };
 

@@ -185,7 +185,7 @@ void Loop::stay_in_front() {
 bool Loop::ends(TimestampNs start) {
   const TimestampNs now = clock().now();
   if (options_.guide != nullptr) {
-    if (viewer_->led_to_end()) return true;
+    if (viewer_->guidance().end) return true;
     if (presenter_->ended()) presenter_->keep_open();
   }
   if (presenter_->ended() && !viewer_->may_end()) presenter_->keep_open();
@@ -215,12 +215,15 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     options_.stage.quality = Quality::kExact;
     manual_.set(step());
   }
-  DUBSAR_ASSIGN(viewer_, Viewer::create(mesh, options_, *presenter_, clock(), std::move(sink), note, shelf));
+  const auto surface_goes = [this] {
+    if (also_) also_->drop_surface();
+  };
+  DUBSAR_ASSIGN(viewer_,
+                Viewer::create(mesh, options_, {*presenter_, clock(), shelf, surface_goes}, std::move(sink), note));
   if (also_)
     also_->begin(options_);
   else
     also_ = std::make_unique<SidePanels>(options_, *presenter_);
-  viewer_->on_surface_change([this] { also_->drop_surface(); });
   if (!options_.window) progress_.begin("view", 0, "frame");  // a window shows itself how things stand
   const TimestampNs start = clock().now();
   if (auto done = turn_until_over(start, look); !done) {  // what a person made is not lost with the session
@@ -231,13 +234,8 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
   out_.seconds = 1e-9 * static_cast<double>(clock().now() - start);
   out_.fps = figures_.fps();
   out_.interval_ms = figures_.intervals_ms();
-  out_.view = viewer_->report().view;
-  out_.display = viewer_->display();
-  out_.rows = viewer_->sources();
-  out_.sources = viewer_->source_states();
   out_.also = also_->states();
-  out_.document = viewer_->document();
-  out_.triangles = viewer_->mesh().triangles.size();
+  viewer_->tell(out_);
   DUBSAR_TRY(viewer_->finish());
   if (kept != nullptr && options_.window) give(*kept);
   return std::move(out_);
@@ -251,8 +249,6 @@ Result<void> Loop::turn_until_over(TimestampNs start, const std::function<void(c
     if (progress_.cancelled()) return cancelled_error();
     presenter_->take_events();
     stay_in_front();
-    if (presenter_->take_place_changed())
-      if (auto done = viewer_->place_changed(); !done) log_warning("{}", done.error().message);
     const bool damaged = presenter_->take_damaged();
     const TimestampNs at = clock().now();
     viewer_->tick(at, (simulated() ? at : presenter_->light(at)) + delay, figures_.recent());
@@ -264,8 +260,8 @@ Result<void> Loop::turn_until_over(TimestampNs start, const std::function<void(c
     last_turn = report.view.rotation;
     bool drawn = false;
     const auto works = simulated() || !presenter_->visible() ? Result<bool>(false) : viewer_->work();
-    const bool due =
-        simulated() ? steps_ % options_.files.every == 0 : damaged || viewer_->needs_paint() || viewer_->fields() > 1;
+    const bool due = simulated() ? steps_ % options_.files.every == 0
+                                 : damaged || viewer_->stage().needs_paint() || viewer_->stage().traits().fields > 1;
     const std::string frame = due && presenter_->visible() ? frame_file() : std::string();
     if (!works || (due && presenter_->visible())) {
       const auto done = works ? draw(drawn) : Result<void>(tl::unexpect, works.error());
@@ -282,7 +278,7 @@ Result<void> Loop::turn_until_over(TimestampNs start, const std::function<void(c
       DUBSAR_TRY(viewer_->flush());
       manual_.advance(step());
     } else if (!over && !works.value_or(false)) {
-      presenter_->wait(viewer_->needs_paint() || report.moving || also_->need_paint());
+      presenter_->wait(viewer_->stage().needs_paint() || report.moving || also_->need_paint());
     }
   }
   return {};

@@ -5,7 +5,7 @@
 
 #include "app/panels/overlay.h"
 #include "app/panels/panel_font.h"
-#include "app/viewer/presenter/window_input.h"
+#include "app/tools/window_input.h"
 #include "app/viewer/presenter/window_presenter.h"
 #include "app/viewer/viewer.h"
 #include "core/base/system/log.h"
@@ -209,13 +209,13 @@ Result<void> SidePanels::follow(Viewer& viewer, TimestampNs now, const std::stri
 
 /// Sentences and signs of whoever leads the session, as large as the reader needs them here.
 Result<void> SidePanels::say(Panel& panel, const Viewer& viewer) {
-  if (!viewer.gallery()) return {};
+  if (!viewer.guidance().picture) return {};
   if (!panel.words) {
     DUBSAR_ASSIGN(panel.words, Overlay::create(viewer.keys()));
   }
   const glm::dvec2 window = panel.stage->window_mm();
   OverlayText text;
-  text.gallery = gallery_on(*viewer.gallery(), window.x / window.y);
+  text.gallery = gallery_on(*viewer.guidance().picture, window.x / window.y);
   if (text == panel.words->text()) return {};
   panel.words->set(std::move(text));
   panel.stage->set_overlay(panel.words.get());

@@ -99,7 +99,6 @@ struct PictureReport {
   bool moving = false;                     ///< it differs from the last one
   std::optional<TimestampNs> input_age{};  ///< device time of the newest measurement to the cameras; none: nothing new
   std::optional<PanelLight> light{};       ///< where the panel's lenses send it, for displays with lenses
-  std::optional<glm::dvec3> selected_m{};  ///< a dwelling hand chose this place
 };
 
 /// In real time, from the beginning of the session: to the first picture in the window, and to the first one that shows

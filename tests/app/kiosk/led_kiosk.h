@@ -37,7 +37,6 @@ class Kiosk {
     Guidance last;
     for (int i = 0; i < static_cast<int>(20 * seconds); ++i, now_ += kStep) {
       last = guide_->lead({now_, steered, document_, rows_, {600, 340}, {0, 0}, {}, {}, read_, on_screen_});
-      steered.selected_m.reset();
       if (last.scene) {
         if (last.scene->camera) {
           fastest_deg_per_s =

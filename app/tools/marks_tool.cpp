@@ -1,0 +1,34 @@
+#include "app/tools/marks_tool.h"
+
+#include "app/stage/marks.h"
+#include "core/base/system/log.h"
+
+namespace dubsar::app {
+
+void MarksTool::contribute(Shown& shown) {
+  const auto marks = [&](const Document& document, const PartLooks& parts) {
+    return marks_of(document, scene_.desk(), parts, *font_, scene_.window.letters);
+  };
+  shown.marks = marks(*scene_.seen, shown.parts);
+  if (!scene_.desk().beside) return;
+  const Document& kept = *scene_.desk().beside;  // the state that was put beside the present one
+  auto beside = std::make_shared<Shown>(scene_.shown(kept, scene_.desk().linked ? shown.view : view_of(kept)));
+  beside->marks = marks(kept, beside->parts);
+  shown.beside = std::move(beside);
+}
+
+void MarksTool::point() {
+  Decor decor;
+  const Pointing& seen = scene_.desk().pointing;
+  if ((seen.magnify > 0 || seen.cursor) && seen.at) {
+    const auto place = scene_.stage->place_at(*seen.at);
+    if (!place) log_warning("{}", place.error().message);
+    if (place && *place) {
+      if (seen.magnify > 0) decor.lens = Lens{**place, seen.magnify};
+      if (seen.cursor) decor.cursor_mm = **place;
+    }
+  }
+  scene_.stage->set_decor(decor);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,129 @@
+#include "app/viewer/viewer_place.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <glm/geometric.hpp>
+
+#include "core/base/numbers/inch.h"
+#include "core/image_io/png_file.h"
+#include "core/image_io/tiff_file.h"
+
+namespace dubsar::app {
+namespace {
+namespace fs = std::filesystem;
+
+/// The first of NAME-001.png, NAME-002.png ... that is not there yet.
+fs::path next_free(const std::string& name) {
+  for (int number = 1;; ++number) {
+    fs::path path = fmt::format("{}-{:03}.png", name, number);
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(path, error))) return path;
+  }
+}
+
+Result<fs::path> new_picture(const fs::path& path) {
+  const std::string suffix = path.extension().string();
+  if (suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
+    return fail(ErrorKind::kUsage, "picture: cannot write {}, expected a name that ends in .png or .tif",
+                path.string());
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(path, error)))
+    return fail(ErrorKind::kUsage, "picture: {} is there already; give another name", path.string());
+  return path;
+}
+
+Result<void> write(const fs::path& path, const Image& image, double dpi) {
+  return path.extension() == ".png" ? write_png(path, image, {.dpi = dpi}) : write_tiff(path, image, dpi);
+}
+
+}  // namespace
+
+Result<void> ViewerPlace::switch_display(int step) {
+  DUBSAR_TRY(to_.displays.step(step));
+  if (step == 0) return {};
+  to_.scene.editor->desk().panels = to_.displays.panels_wanted();
+  say("display " + to_.displays.name());
+  return {};
+}
+
+Result<void> ViewerPlace::swap_eyes() {
+  DUBSAR_TRY(to_.scene.stage->swap_eyes());
+  say("left and right eye exchanged");
+  return {};
+}
+
+void ViewerPlace::recentre_heads() {
+  to_.steering.input().recentre();
+  to_.scene.stage->recentre();
+}
+
+bool ViewerPlace::toggle_source(std::size_t index) {
+  if (!to_.sources.toggle(index)) return false;
+  to_.sources_changed();
+  return true;
+}
+
+Result<void> ViewerPlace::open_file(const std::string& path) {
+  DUBSAR_TRY(to_.files.open({fs::path(path)}));
+  return to_.file_asked();
+}
+
+Result<void> ViewerPlace::open_recent(std::size_t number) {
+  DUBSAR_TRY(to_.files.open_recent(number));
+  return to_.file_asked();
+}
+
+Result<void> ViewerPlace::switch_file(int step) {
+  DUBSAR_TRY(to_.files.step(step));
+  return to_.file_asked();
+}
+
+void ViewerPlace::end() {
+  if (to_.may_end()) to_.presenter.end();
+}
+
+Result<SurfacePin> ViewerPlace::pin_seen() {
+  const ToolScene& scene = to_.scene;
+  auto picked = scene.picked_at(scene.window.pointer);
+  if (!picked) picked = scene.picked_at({scene.window.aside, 0.0});
+  if (!picked) return fail(ErrorKind::kUsage, "there is no surface under the pointer");
+  return scene.pin(scene.scan_place(*picked));
+}
+
+Result<void> ViewerPlace::write_slice(const std::string& path, std::size_t which) {
+  DUBSAR_ASSIGN(const fs::path target, new_picture(path));
+  DUBSAR_ASSIGN(const Image image, to_.slices.whole(which));
+  const glm::dvec3& voxel = to_.scene.mesh->frame.input_voxel.mm;
+  DUBSAR_TRY(write(target, image, kMmPerInch / std::min({voxel.x, voxel.y, voxel.z})));
+  say(fmt::format("written: {}, {} x {} pixels", target.string(), image.width, image.height));
+  return {};
+}
+
+Result<void> ViewerPlace::picture(const std::string& path, int factor) {
+  const std::string& title = to_.options.around.title;
+  const std::string name = title.empty() ? "dubsar" : fs::path(title).stem().string();
+  DUBSAR_ASSIGN(const fs::path target, new_picture(path.empty() ? next_free(name) : fs::path(path)));
+  Stage& stage = *to_.scene.stage;
+  DUBSAR_ASSIGN(const Image image, stage.still(factor));
+  // Dots an inch of the object itself, in its middle: printed so, it has its size.
+  const double scale = glm::length(glm::dvec3(stage.screen_from_model()[0]));
+  const double dpi = image.height / stage.window_mm().y * scale * kMmPerInch;
+  DUBSAR_TRY(write(target, image, dpi));
+  say(fmt::format("written: {}, {} x {} pixels, {:.0f} dots an inch at life size", target.string(), image.width,
+                  image.height, dpi));
+  return {};
+}
+
+Result<void> ViewerPlace::play_film(std::optional<double> from_s) {
+  to_.film.play(from_s, to_.clock.now());
+  return {};
+}
+
+std::string ViewerPlace::today() const {
+  const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now()));
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(day.year()), static_cast<unsigned>(day.month()),
+                     static_cast<unsigned>(day.day()));
+}
+
+}  // namespace dubsar::app
