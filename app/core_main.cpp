@@ -13,8 +13,9 @@ int main(int argc, char** argv) {
                              "  dubsar process scans/ -o surfaces/ --resume\n"
                              "  dubsar exa verify surfaces/tablet.exa\n\n") +
                  kExitCodes);
-  return run_program(program,
-                     {add_phantom_verb(program), add_process_verb(program), add_info_verb(program),
-                      add_exa_verb(program), add_wedges_verb(program), add_handcopy_verb(program)},
-                     argc, argv);
+  return run_program(
+      program,
+      {add_phantom_verb(program), add_process_verb(program), add_info_verb(program), add_exa_verb(program),
+       add_wedges_verb(program), add_handcopy_verb(program), add_compare_verb(program)},
+      argc, argv);
 }

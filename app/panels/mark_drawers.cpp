@@ -54,14 +54,17 @@ std::optional<std::size_t> letter_buttons(const Board& desk, const std::string& 
 /// Enter makes the next line; what is wrong with brackets; the translation. Below the text field.
 void draw_line_below(const Board& desk, std::size_t at) {
   const Note& note = desk.state.document.notes[at];
-  if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGuiKey_Enter))
+  if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)))
     desk.commands.push_back(fmt::format("next_line {}", at + 1));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("sz s, t, h, qi2 become letters; Enter makes the next line");
-  for (const BracketFault& fault : bracket_faults(note.text))
+  const std::vector<BracketFault> faults = bracket_faults(note.text);
+  for (const BracketFault& fault : faults)
     ImGui::TextColored(ImColor(kAccent), "%s %s", fault.bracket.c_str(),
                        fault.kind == BracketFault::Kind::kNotClosed   ? "is not closed"
                        : fault.kind == BracketFault::Kind::kNotOpened ? "closes nothing"
                                                                       : "stands within another one");
+  if (!faults.empty())
+    button(desk, "close brackets", fmt::format("note_text {} {}", at + 1, with_brackets_closed(note.text)), false);
   std::string typed;
   if (type_in("##translation", note.translation, typed, kFieldPx))
     desk.commands.push_back(fmt::format("line_translation {} {}", at + 1, typed));

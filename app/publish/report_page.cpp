@@ -98,6 +98,20 @@ std::string provenance(const ReportContent& content) {
          markup_text(dump_json_lines(facts)) + "</pre></details>\n";
 }
 
+/// JSON in which nothing ends the element that it stands in.
+std::string pins_json(const std::vector<ReportPin>& pins) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const ReportPin& pin : pins)
+    out.push_back({{"label", pin.label},
+                   {"text", pin.text},
+                   {"at", {pin.at.x, pin.at.y, pin.at.z}},
+                   {"normal", {pin.normal.x, pin.normal.y, pin.normal.z}},
+                   {"envelope", pin.envelope}});
+  std::string text = out.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return text;
+}
+
 /// A table of what somebody kept; nothing where they kept none.
 std::string work_table(const char* heading, const std::vector<ReportRow>& rows) {
   if (rows.empty()) return {};
@@ -153,6 +167,7 @@ std::string report_page(const ReportContent& content) {
   out += "<h2>How it was made</h2>\n" + provenance(content);
   out += fmt::format("<p class=\"dim\">Made by {}.{}</p>\n", markup_text(content.made_by),
                      content.rights.empty() ? "" : " " + markup_text(content.rights));
+  out += "<script type=\"application/json\" id=\"pins\">" + pins_json(content.work.pins) + "</script>\n";
   out += "<script type=\"application/octet-stream\" id=\"surface\">" + base64(content.glb) + "</script>\n<script>\n";
   out += page_file("viewer.js");
   return out + "</script>\n</body>\n</html>\n";

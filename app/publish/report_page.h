@@ -1,6 +1,7 @@
 #pragma once
 // A page about a surface that needs nothing but itself: figures, pictures, and the surface to turn in the browser.
 
+#include <glm/vec3.hpp>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,16 @@ struct ReportPicture {
 struct ReportRow {
   std::string label, text, more;  ///< "o. 3", the line, its translation
 };
+/// A place that the page marks on the surface.
+struct ReportPin {
+  std::string label, text;
+  glm::dvec3 at{0.0}, normal{0.0, 0.0, 1.0};  ///< as the GLB has places: mm in the tablet's own axes
+  bool envelope = false;                      ///< goes with it when it is lifted
+};
 struct ReportWork {
   std::vector<ReportRow> record;  ///< "museum number", "AO 8295"
   std::vector<ReportRow> lines, notes, measures;
+  std::vector<ReportPin> pins;  ///< of lines and notes
 };
 
 struct ReportContent {

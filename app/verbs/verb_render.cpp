@@ -33,6 +33,7 @@ struct Look {
   bool colour_parts = false, transparent = false, shadows = false, unmarked = false;
   std::vector<std::string> opacity, cut;
   double unpack = 0.0, fog = 0.0;  ///< percent
+  FigureOptions figure;
 };
 
 struct RenderRequest {
@@ -44,7 +45,6 @@ struct RenderRequest {
   bool perspective = false, window = false;
   Look look;
   LookOptions shade;
-  FigureOptions figure;
 };
 
 Result<void> read_size(const std::string& text, CameraOptions& camera) {
@@ -169,7 +169,7 @@ ViewOptions session_of(const RenderRequest& options, const SinkSpec& display, co
 Result<void> check_told_picture(const RenderRequest& options) {
   if (options.told.empty()) return {};
   if (options.perspective || options.mm_per_pixel > 0 || options.look.transparent || options.shade.legend ||
-      options.figure.asked() || options.display.pattern || !options.look.cut.empty())
+      options.look.figure.asked() || options.display.pattern || !options.look.cut.empty())
     return fail(
         ErrorKind::kUsage,
         "--do draws what a window shows, expected none of --perspective, --mm-per-pixel, --transparent, "
@@ -250,7 +250,7 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
   render.camera.perspective = options.perspective;
   render.camera.mm_per_pixel = options.mm_per_pixel;
   render.camera.whole = true;
-  DUBSAR_TRY(check_figure(options.figure, render.camera, !options.size.empty(), options.look.transparent));
+  DUBSAR_TRY(check_figure(options.look.figure, render.camera, !options.size.empty(), options.look.transparent));
   if (options.size.empty() && options.mm_per_pixel > 0) render.camera.width = render.camera.height = 0;
   if (options.samples > 0) render.samples = options.samples;
   render.shading.background.transparent = options.look.transparent;
@@ -294,13 +294,13 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
     if (!options.told.empty()) return write_told(options, display, shown, mesh, progress);
     return render_to_display(options.display, display, shown, mesh, options.out, progress);
   }
-  DUBSAR_TRY(apply_figure(options.figure, mesh, render));
+  DUBSAR_TRY(apply_figure(options.look.figure, mesh, render));
   DUBSAR_ASSIGN(Picture picture, render_picture(mesh, render, progress));
   DUBSAR_TRY(add_legend(options.shade, render.shading.style, picture.image));
   const Document kept = kept_work(options.in, mesh).value_or(Document());
   const FigureWords words = figure_words(options.in, options.view, kept, upright ? &way : nullptr);
-  DUBSAR_TRY(finish_figure(options.figure, words, render.shading, picture));
-  const PictureOptions file = figure_file(options.figure, picture, kept.edition.record);
+  DUBSAR_TRY(finish_figure(options.look.figure, words, render.shading, picture));
+  const PictureOptions file = figure_file(options.look.figure, picture, kept.edition.record);
   DUBSAR_TRY(write_picture(options.out, picture.image, file));
   VerbResult result;
   result.json = {{"output", options.out},
@@ -360,7 +360,7 @@ Verb add_render_verb(Arguments program) {
   command.flag("--perspective", options->perspective, "perspective instead of orthographic");
   command.flag("--transparent", options->look.transparent, "no background");
   command.value("--samples", options->samples, "samples per pixel side (3; of displays 2)").range(1, 8);
-  add_figure_options(command, options->figure);
+  add_figure_options(command, options->look.figure);
   add_do_option(command, options->told);
   add_display_options(command, options->display);
   command.footer(

@@ -74,7 +74,7 @@ Result<std::vector<ReportPicture>> pictures_of(const ReportRequest& options, con
 }
 
 /// Record, lines as they are read, pins and measures of a document.
-ReportWork report_work(const Document& kept) {
+ReportWork report_work(const Document& kept, const TabletFrame& way) {
   ReportWork out;
   const TabletRecord& r = kept.edition.record;
   const std::array<std::pair<const char*, const std::string*>, 6> said{{{"museum number", &r.museum_number},
@@ -90,6 +90,10 @@ ReportWork report_work(const Document& kept) {
                          line.text, line.translation});
   for (const Note& note : kept.notes)
     if (!is_text_line(note) || !spot_of(note)) out.notes.push_back({note.label, note.text, note.part});
+  const glm::dmat3 turn = way.tablet_from_model();
+  for (const Note& note : kept.notes)
+    out.pins.push_back(
+        {note.label, note.text, turn * note.at_mm, turn * note.normal, note.part.starts_with("envelope")});
   for (const Measure& measure : kept.measures)
     out.measures.push_back({measure.name, figures_text(measure), measure.part});
   return out;
@@ -109,7 +113,7 @@ Result<VerbResult> run(const ReportRequest& options, Progress& progress) {
   content.made_by = "dubsar " DUBSAR_VERSION;
   content.institution = options.institution.empty() ? record.institution : options.institution;
   content.rights = options.rights.empty() ? record.rights : options.rights;
-  content.work = report_work(kept);
+  content.work = report_work(kept, content.facts.way);
   content.provenance = mesh.provenance;
   TriMesh written = mesh;
   if (mesh.partitions.find(PartitionKind::kTablet) != nullptr) {

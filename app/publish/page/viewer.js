@@ -77,6 +77,24 @@
   const upright = [1, 0, 0, 0, 1, 0, 0, 0, 1];
   let turn = upright, zoom = 1, pan = [0, 0], lift = 0, angle = 315, queued = false;
 
+  // Labels of lines and notes, over the picture; those that look away are not seen.
+  const pins = JSON.parse(document.getElementById('pins').textContent).map(pin => {
+    const label = Object.assign(document.createElement('span'), { className: 'pin', textContent: pin.label, title: pin.text });
+    canvas.parentElement.append(label);
+    return { ...pin, element: label };
+  });
+  let showPins = true;
+  const turned = v => [0, 1, 2].map(r => turn[3 * r] * v[0] + turn[3 * r + 1] * v[1] + turn[3 * r + 2] * v[2]);
+  const placePins = (scale, w, h, panY) => {
+    for (const pin of pins) {
+      const up = pin.envelope ? lift * size[1] * 1.1 : 0;
+      const p = turned(pin.at.map((x, k) => x + (k === 1 ? up : 0) - middle[k]));
+      const x = 0.5 + 0.5 * (p[0] + pan[0]) * scale / w, y = 0.5 - 0.5 * (p[1] + panY) * scale / h;
+      const seen = showPins && turned(pin.normal)[2] > 0.15 && x > 0 && x < 1 && y > 0 && y < 1;
+      Object.assign(pin.element.style, { display: seen ? 'block' : 'none', left: 100 * x + '%', top: 100 * y + '%' });
+    }
+  };
+
   const draw = () => {
     queued = false;
     const ratio = window.devicePixelRatio || 1, w = Math.round(canvas.clientWidth * ratio), h = Math.round(canvas.clientHeight * ratio);
@@ -90,6 +108,7 @@
     gl.uniform2f(place('pan'), pan[0], pan[1] - lift * size[1] * 0.5);
     gl.uniform3fv(place('middle'), middle);
     gl.uniformMatrix3fv(place('turn'), true, turn);
+    placePins(scale, w, h, pan[1] - lift * size[1] * 0.5);
     const a = angle * Math.PI / 180, e = 25 * Math.PI / 180;
     gl.uniform3f(place('light'), Math.cos(e) * Math.sin(a), Math.cos(e) * Math.cos(a), Math.sin(e));
     for (const part of parts) {
@@ -148,6 +167,11 @@
     b.addEventListener('click', () => { use(); redraw(); });
     desk.append(b);
   };
+  if (pins.length > 0) {
+    const input = Object.assign(document.createElement('input'), { type: 'checkbox', checked: true });
+    input.addEventListener('change', () => { showPins = input.checked; redraw(); });
+    control('lines and notes', input);
+  }
   button('obverse', () => { turn = upright; zoom = 1; pan = [0, 0]; });
   button('reverse', () => { turn = aboutX(Math.PI); zoom = 1; pan = [0, 0]; });
 

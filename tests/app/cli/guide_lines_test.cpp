@@ -44,7 +44,7 @@ TEST(GuideLines, EachCommandLineRuns) {
     const ProgramRun run = run_dubsar(arguments);
     EXPECT_EQ(run.exit_code, 0) << line << "\n" << run.err;
   }
-  EXPECT_EQ(lines, 17);
+  EXPECT_EQ(lines, 20);
   EXPECT_TRUE(fs::exists("pictures"));
   EXPECT_TRUE(fs::exists("reverse.png"));
   EXPECT_TRUE(fs::exists("film/picture_00009.png"));

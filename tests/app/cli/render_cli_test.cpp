@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
@@ -77,6 +78,71 @@ TEST_F(RenderCommand, ATiffIsWrittenAndUnknownPartsAreRefused) {
   EXPECT_EQ(tiff->substr(0, 2), "II");
   EXPECT_EQ(run_dubsar({"render", file("tablet.exa"), "-o", file("c.png"), "--partition", "lid"}).exit_code, 64);
   EXPECT_FALSE(fs::exists(file("c.png")));
+}
+
+TEST_F(RenderCommand, AFigureHasItsWidthInPrintItsGroundAndABarOfItsLength) {
+  const auto figure = [&](const std::vector<std::string>& extra) {
+    std::vector<std::string> arguments{"render", file("tablet.exa"), "-o", file("figure.png"), "--samples",
+                                       "1",      "--json",           "-"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const ProgramRun run = run_dubsar(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return nlohmann::json::parse(run.out.substr(run.out.find('{')));
+  };
+  const auto told = figure({"--width-mm", "50", "--dpi", "300", "--ground", "white", "--scale-bar", "--labels"});
+  EXPECT_EQ(told["width"], 591) << "50 mm at 300 dots an inch";
+  EXPECT_EQ(told["dpi"], 300.0);
+  EXPECT_NEAR(told["bar_px"].get<double>() * told["mm_per_pixel"].get<double>(), told["bar_mm"].get<double>(),
+              0.5 * told["mm_per_pixel"].get<double>());
+  const Image white = *read_png(file("figure.png"));
+  EXPECT_EQ(white.width, 591);
+  EXPECT_EQ(white.channels, 3);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(white.at(0, 0)[c], 255);
+  int dark = 0;  // the bar and the words: black on white, below the object
+  for (int y = white.height - 30; y < white.height; ++y)
+    for (int x = 0; x < white.width; ++x) dark += white.at(x, y)[0] < 40 ? 1 : 0;
+  EXPECT_GT(dark, told["bar_px"].get<int>());
+  const auto life = figure({"--dpi", "254"});
+  EXPECT_NEAR(life["mm_per_pixel"].get<double>(), 0.1, 1e-12);
+  figure({"--width-mm", "20", "--ground", "none"});
+  const Image clear = *read_png(file("figure.png"));
+  ASSERT_EQ(clear.channels, 4);
+  EXPECT_EQ(clear.at(0, 0)[3], 0);
+  EXPECT_EQ(
+      run_dubsar({"render", file("tablet.exa"), "-o", file("x.png"), "--dpi", "300", "--size", "64x64"}).exit_code, 64);
+  EXPECT_EQ(run_dubsar({"render", file("tablet.exa"), "-o", file("x.png"), "--dpi", "300", "--perspective"}).exit_code,
+            64);
+  EXPECT_EQ(run_dubsar({"render", file("tablet.exa"), "-o", file("x.png"), "--mm-per-pixel", "0.01", "--size", "64x64"})
+                .exit_code,
+            64)
+      << "the whole tablet or an error";
+}
+
+TEST_F(RenderCommand, ATextGoesInAndOutByCommandsAndStandsBesideTheHandCopy) {
+  const std::string text = "&P999001 = AO 0\n#atf: lang akk\n@tablet\n@obverse\n1. a-na\n2. \u0161u-mi\n";
+  ASSERT_TRUE(write_file_atomically(file("in.atf"), std::string_view(text)));
+  const ProgramRun told = run_dubsar({"render", file("tablet.exa"), "-o", file("told.png"), "--size", "64x64", "--do",
+                                      "read_atf " + file("in.atf"), "--do", "write_atf " + file("out.atf")});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_EQ(read_text_file(file("out.atf")).value(), text);
+  const ProgramRun copied =
+      run_dubsar({"handcopy", file("tablet.exa"), "-o", file("copy.svg"), "--atf", file("in.atf"), "--width", "2"});
+  ASSERT_EQ(copied.exit_code, 0) << copied.err;
+  const std::string svg = read_text_file(file("copy.svg")).value();
+  EXPECT_NE(svg.find(">\u0161u-mi</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">AO 0</text>"), std::string::npos) << "its title";
+}
+
+TEST_F(RenderCommand, ASurfaceComparedWithItselfIsTheSame) {
+  const ProgramRun run =
+      run_dubsar({"compare", file("tablet.exa"), file("tablet.exa"), "-o", file("same.ply"), "--json", "-"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto told = nlohmann::json::parse(run.out.substr(run.out.find('{')));
+  EXPECT_LT(told["rms_mm"].get<double>(), 1e-4);
+  EXPECT_GT(told["within_0.05_mm"].get<double>(), 0.9999);
+  EXPECT_EQ(run_dubsar({"render", file("same.ply"), "-o", file("same.png"), "--size", "64x64", "--style", "photograph"})
+                .exit_code,
+            0);
 }
 
 TEST_F(RenderCommand, APlyLooksLikeTheExaItCameFrom) {

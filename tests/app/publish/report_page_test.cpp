@@ -59,11 +59,13 @@ TEST(ReportPage, CarriesTheRecordLinesNotesAndMeasuresThatWereKept) {
   kept.work.record = {{"museum number", "AO 8295", ""}};
   kept.work.lines = {{"o. 1", "a-na <b>", "to"}};
   kept.work.notes = {{"r. 2", "a crack", ""}};
+  kept.work.pins = {{"o. 1", "</script><b>", {1, 2, 3}, {0, 0, 1}, true}};
   kept.work.measures = {{"head", "0.412 mm deep", "tablet"}};
   const std::string page = report_page(kept);
   EXPECT_THAT(page, HasSubstr("<tr><td>museum number</td><td>AO 8295</td>"));
   EXPECT_THAT(page, HasSubstr("<tr><td>o. 1</td><td>a-na &lt;b&gt;</td><td class=\"dim\">to</td></tr>"));
   EXPECT_THAT(page, HasSubstr("<td>r. 2</td><td>a crack</td>"));
+  EXPECT_THAT(page, HasSubstr(R"("text":"\u003c/script>\u003cb>")")) << "it does not end the element";
   EXPECT_THAT(page, HasSubstr("<td>head</td><td>0.412 mm deep</td>"));
 }
 
