@@ -99,7 +99,7 @@ TEST_F(RenderCommand, AFigureHasItsWidthInPrintItsGroundAndABarOfItsLength) {
   EXPECT_EQ(white.channels, 3);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(white.at(0, 0)[c], 255);
   int dark = 0;  // the bar and the words: black on white, below the object
-  for (int y = white.height - 30; y < white.height; ++y)
+  for (int y = white.height - 70; y < white.height; ++y)
     for (int x = 0; x < white.width; ++x) dark += white.at(x, y)[0] < 40 ? 1 : 0;
   EXPECT_GT(dark, told["bar_px"].get<int>());
   const auto life = figure({"--dpi", "254"});
