@@ -42,7 +42,9 @@ double blur_of(const TriMesh& mesh) {
   if (!estimates.is_object() || !estimates.contains("blur")) return 0.0;
   double variance = number_at(estimates.at("blur"), "variance_vox2", 0.0);
   if (!(variance > 0)) return 0.0;
-  variance += kSurface * (1.0 - std::clamp(number_at(all->at("parameters"), "sharpen", 0.0), 0.0, 1.0));
+  const nlohmann::json& used = all->at("parameters");
+  variance +=
+      kSurface * (1.0 - std::clamp(number_at(used, "sharpen", 0.0) + number_at(used, "sharpen_wide", 0.0), 0.0, 1.0));
   // "raw" is the scan's sample, the next one the grid before the first pass.
   if (estimates.contains("filters") && estimates.at("filters").is_array() && estimates.at("filters").size() > 2) {
     const double noise = std::pow(10.0, -number_at(estimates.at("filters")[1], "snr_db", 100.0) / 10.0);

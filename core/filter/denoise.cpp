@@ -38,12 +38,14 @@ std::int64_t guide_radius(const DenoiseOptions& options) {
 /// One iteration of one filter; of the points of each row that are wanted.
 class FilterSource final : public SlabSource {
  public:
-  /// `sharpen`, with Gauss: the source plus so much of its difference from it.
-  FilterSource(SlabSource& source, const DenoiseOptions& options, const Wanted& wanted = {}, float sharpen = 0.0F)
+  /// `sharpen`, with Gauss: the source plus so much of its difference from it; nothing new beyond `level` (NaN: none).
+  FilterSource(SlabSource& source, const DenoiseOptions& options, const Wanted& wanted = {}, float sharpen = 0.0F,
+               float level = std::numeric_limits<float>::quiet_NaN())
       : source_(&source),
         options_(options),
         wanted_(wanted),
         sharpen_(sharpen),
+        level_(level),
         radius_(options.window / 2),
         guide_radius_(guide_radius(options)),
         scale_(guide_scale(options)),
@@ -186,9 +188,26 @@ class FilterSource final : public SlabSource {
           if (sharpen_ == 0.0F) continue;
           const float* own = image_.row(y, z) + span.begin;
           for (std::int64_t x = 0; x < count; ++x) to[x] = own[x] + sharpen_ * (own[x] - to[x]);
+          if (!std::isnan(level_)) stay_beside(y, z, span, to);
         }
       }
     });
+  }
+
+  /// Takes back what went to the other side of the level where nothing beside it was there before.
+  void stay_beside(std::int64_t y, std::int64_t z, const Span& span, float* to) {
+    const float* own = image_.row(y, z);
+    for (std::int64_t x = span.begin; x < span.end; ++x) {
+      const bool inside = own[x] >= level_;
+      float& value = to[x - span.begin];
+      if ((value >= level_) == inside) continue;
+      bool beside = false;
+      for (std::int64_t k = 0; k < 9 && !beside; ++k) {
+        const float* row = image_.row(y + k % 3 - 1, z + k / 3 - 1) + x;  // rows are padded
+        beside = (row[-1] >= level_) != inside || (row[0] >= level_) != inside || (row[1] >= level_) != inside;
+      }
+      if (!beside) value = own[x];
+    }
   }
 
   /// Row of Pascal's triangle with `side` entries, sum 1.
@@ -205,7 +224,7 @@ class FilterSource final : public SlabSource {
   SlabSource* source_;
   DenoiseOptions options_;
   Wanted wanted_;
-  float sharpen_;
+  float sharpen_, level_;
   std::int64_t radius_, guide_radius_;
   float scale_;
   std::int64_t batch_;
@@ -261,6 +280,13 @@ std::unique_ptr<SlabSource> make_sharpened(SlabSource& source, float amount, con
   DenoiseOptions gauss;
   gauss.method = DenoiseMethod::kGauss;
   return std::make_unique<FilterSource>(source, gauss, wanted, amount);
+}
+
+std::unique_ptr<SlabSource> make_widely_sharpened(SlabSource& source, float amount, float level, const Wanted& wanted) {
+  DenoiseOptions gauss;
+  gauss.method = DenoiseMethod::kGauss;
+  gauss.window = 7;
+  return std::make_unique<FilterSource>(source, gauss, wanted, amount, level);
 }
 
 Result<void> denoise_in_place(GridStore& grid, const DenoiseOptions& options, Progress& progress,

@@ -6,6 +6,7 @@
 
 #include "core/base/system/log.h"
 #include "core/extract/extract.h"
+#include "core/filter/sharpen.h"
 #include "core/pipeline/tapped_source.h"
 
 namespace dubsar {
@@ -78,16 +79,22 @@ Result<RefinedSurface> refine(SlabSource& scan, GridStore& half, double half_noi
                 mark_near_surface(half, scan.dims(),
                                   {.threshold = threshold, .margin = margin_for(estimates, half_noise)}, run.progress));
   half.release();
-  BandFilters filters{std::move(learned.passes), 0.0f};
+  BandFilters filters{.passes = std::move(learned.passes), .level = threshold};
   SampledSurface& sampled = refined.sampled;
   sampled.sharpen =
       options.sample.sharpen.value_or(options.denoise.iterations > 0 ? sharpen_amount(estimates.snr_db) : 0.0f);
-  if (!options.sample.sharpen && sampled.sharpen > 0.0f) {
+  if (!options.sample.sharpen && options.denoise.iterations > 0) {
     DUBSAR_ASSIGN(BandSource around, BandSource::make(scan, filters, surface, kBlurReach, outside));
     DUBSAR_ASSIGN(sampled.blur, measure_edge_spread(around, estimates.m_lo, estimates.m_hi, run.progress));
-    if (sampled.blur) sampled.sharpen *= static_cast<float>(std::min(sampled.blur->variance / kGaussVariance, 1.0));
+    if (sampled.blur) {
+      sampled.sharpen *= static_cast<float>(std::min(sampled.blur->variance / kGaussVariance, 1.0));
+      sampled.sharpen_wide = wide_sharpening(sampled.blur->variance, estimates.snr_db, sampled.sharpen);
+    }
+    log_debug("sharpen: edges of {:.2f} voxel2, {:.1f} dB: {:.2f}, wide {:.2f}",
+              sampled.blur ? sampled.blur->variance : NAN, estimates.snr_db, sampled.sharpen, sampled.sharpen_wide);
   }
   filters.sharpen = sampled.sharpen;
+  filters.sharpen_wide = sampled.sharpen_wide;
   DUBSAR_ASSIGN(SurfaceBand band, read_band(scan, std::move(surface), filters, threshold, outside, run.progress));
   refined.band = band.report;
   run.clock.finish(512 * band.report.bricks);

@@ -15,12 +15,18 @@ constexpr int kMostRounds = 12;
 
 Result<FilteredScan> FilteredScan::make(SlabSource& scan, const BandFilters& filters, const Wanted& wanted) {
   FilteredScan result(scan);
-  std::int64_t reach = filters.sharpen > 0.0f ? 1 : 0;
+  const std::int64_t narrow = filters.sharpen > 0.0f ? 1 : 0;
+  std::int64_t reach = narrow + (filters.sharpen_wide > 0.0f ? 3 : 0);
   for (const DenoiseOptions& pass : filters.passes) reach += reach_of(pass);
   for (const DenoiseOptions& pass : filters.passes) {
     reach -= reach_of(pass);
     DUBSAR_ASSIGN(std::unique_ptr<SlabSource> filter, make_denoised(*result.last_, pass, wanted.wider(reach)));
     result.filters_.push_back(std::move(filter));
+    result.last_ = result.filters_.back().get();
+  }
+  if (filters.sharpen_wide > 0.0f) {
+    result.filters_.push_back(
+        make_widely_sharpened(*result.last_, filters.sharpen_wide, filters.level, wanted.wider(narrow)));
     result.last_ = result.filters_.back().get();
   }
   if (filters.sharpen > 0.0f) {

@@ -14,10 +14,12 @@
 
 namespace dubsar {
 
-/// Passes over the scan one after the other, each with its own noise, and sharpening at the end (0: none).
+/// Passes over the scan one after the other, each with its own noise, and sharpening at the end (0: none), first the
+/// wide one, beside surfaces at `level` (sharpen.h).
 struct BandFilters {
   std::vector<DenoiseOptions> passes;
-  float sharpen = 0.0f;
+  float sharpen = 0.0f, sharpen_wide = 0.0f;
+  float level = 0.0f;
 };
 
 /// The scan behind these filters, at the points that are wanted; nothing elsewhere (denoise.h). Borrows scan and mask.

@@ -181,6 +181,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   judged.stages = result.report.stages;
   judged.blur = result.report.scan.blur;
   judged.sharpen = result.report.surface_by.sharpen;
+  judged.sharpen_wide = result.report.surface_by.sharpen_wide;
   judged.traced = result.report.contact && result.report.contact->traced;
   if (result.report.contact) judged.remark = result.report.contact->why;
   if (!how.judge) return judged;

@@ -51,6 +51,7 @@ struct JudgedRow {
   phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
   TabletError tablet;
   float sharpen = 0.0f;  ///< amount that was used
+  float sharpen_wide = 0.0f;
   Crossings crossings;
   bool traced = false;
   std::optional<EdgeSpread> blur;

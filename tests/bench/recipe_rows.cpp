@@ -27,6 +27,7 @@ constexpr Figure kFigures[] = {
     {"vertices of pores that noise made, %", 3,
      [](const JudgedRow& r) { return 100.0 * r.tablet.settled.noise_pores; }},
     {"sharpened by", 2, [](const JudgedRow& r) { return static_cast<double>(r.sharpen); }},
+    {"and widely by", 2, [](const JudgedRow& r) { return static_cast<double>(r.sharpen_wide); }},
 };
 
 }  // namespace

@@ -41,6 +41,44 @@ TEST(Sharpen, AWaveIsRaisedByWhatTheGaussianTakesFromIt) {
   EXPECT_NEAR(sharpened(wave, 1.4f, 5).at(16, 2, 2), 1.0 + 1.4 * (1.0 - kept), 1e-5);
 }
 
+TEST(Sharpen, TheWideOneRaisesWavesOfAWedgeByWhatTheBlurTook) {
+  const double k = 2.0 * M_PI / 6.0;
+  for (const double blur : {0.7, 0.9, 1.1}) {  // variances
+    const double left = std::exp(-0.5 * blur * k * k);
+    const Volume<float> wave =
+        make({49, 9, 9}, [&](double x, double, double) { return left * std::cos(k * (x - 24.0)); });
+    VolumeSource source(wave);
+    const float amount = wide_sharpening(blur, 40.0, 0.0f);
+    EXPECT_NEAR(testing::read_all(*make_widely_sharpened(source, amount, 10.0f)).value().at(24, 4, 4), 1.0, 1e-4);
+  }
+}
+
+TEST(Sharpen, GoodScansNeedNoWideOneAndNoisyOnesGetNone) {
+  EXPECT_EQ(wide_sharpening(0.35, 40.0, 0.0f), 0.0f);
+  EXPECT_EQ(wide_sharpening(0.55, 25.0, 0.45f), 0.0f);  // of the recipe at 17 dB
+  EXPECT_EQ(wide_sharpening(1.0, 15.0, 0.0f), 0.0f);
+  EXPECT_NEAR(wide_sharpening(1.0, 19.0, 0.0f), 0.5f * wide_sharpening(1.0, 22.0, 0.0f), 1e-6);
+  EXPECT_LE(wide_sharpening(50.0, 30.0, 0.0f), 1.5f);
+}
+
+TEST(Sharpen, TheWideOneMovesSurfacesAndMakesNone) {
+  // A film of air so thin that it stays above the level, clay on both sides, air beyond.
+  const auto scan = make({40, 12, 12}, [](double x, double, double) {
+    return (x < 30.0 ? 1.0 : 0.0) - 0.45 * std::exp(-0.5 * (x - 12.0) * (x - 12.0));
+  });
+  VolumeSource source(scan);
+  const Volume<float> free = testing::read_all(*make_widely_sharpened(source, 1.0f, -10.0f)).value();
+  const Volume<float> held = testing::read_all(*make_widely_sharpened(source, 1.0f, 0.5f)).value();
+  EXPECT_LT(free.at(12, 6, 6), 0.5f);
+  for (std::int64_t x = 0; x < 29; ++x) {
+    EXPECT_GE(held.at(x, 6, 6), 0.5f) << x;
+    if (x != 12) {
+      EXPECT_EQ(held.at(x, 6, 6), free.at(x, 6, 6)) << x;
+    }
+  }
+  for (std::int64_t x = 29; x < 40; ++x) EXPECT_EQ(held.at(x, 6, 6), free.at(x, 6, 6)) << x;
+}
+
 TEST(Sharpen, TheHalfLevelOfAPlanarEdgeKeepsItsPlace) {
   const Volume<float> edge =
       make({24, 5, 5}, [](double x, double, double) { return 0.5 * (1.0 + std::tanh((x - 11.3) / 1.5)); });

@@ -26,7 +26,7 @@ Volume<float> scan_of(Dims dims, std::uint64_t seed, double snr_db) {
   return testing::read_all(source).value();
 }
 
-BandFilters filters_for(double snr_db, float sharpen) {
+BandFilters filters_for(double snr_db, float sharpen, float wide = 0.0f) {
   BandFilters filters;
   double sigma = phantom::kClayDensity / std::pow(10.0, snr_db / 20.0);
   for (int pass = 0; pass < 2; ++pass, sigma *= 0.5) {
@@ -36,6 +36,8 @@ BandFilters filters_for(double snr_db, float sharpen) {
     filters.passes.push_back(options);
   }
   filters.sharpen = sharpen;
+  filters.sharpen_wide = wide;
+  filters.level = kThreshold;
   return filters;
 }
 
@@ -57,9 +59,10 @@ SurfaceBand band_of(const Volume<float>& scan, const BandFilters& filters) {
 }
 
 TEST(SurfaceBand, ItsSurfaceIsThatOfTheWholeScanByteForByte) {
-  for (const auto& [seed, snr, sharpen] : {std::tuple{71u, 17.0, 0.0f}, {72u, 17.0, 0.5f}, {73u, 30.0, 1.0f}}) {
+  for (const auto& [seed, snr, sharpen, wide] :
+       {std::tuple{71u, 17.0, 0.0f, 0.7f}, {72u, 17.0, 0.5f, 0.0f}, {73u, 30.0, 1.0f, 0.4f}}) {
     const Volume<float> scan = scan_of({150, 81, 131}, seed, snr);
-    const BandFilters filters = filters_for(snr, sharpen);
+    const BandFilters filters = filters_for(snr, sharpen, wide);
     VolumeSource source(scan);
     FilteredScan all = FilteredScan::make(source, filters, {}).value();
     Volume<float> whole = testing::read_all(all).value();
@@ -108,7 +111,7 @@ TEST(SurfaceBand, ItFollowsSurfaceThatHalfTheResolutionDoesNotShow) {
 
 TEST(SurfaceBand, ThreadsChangeNoByte) {
   const Volume<float> scan = scan_of({96, 64, 96}, 74, 17.0);
-  const BandFilters filters = filters_for(17.0, 0.3f);
+  const BandFilters filters = filters_for(17.0, 0.3f, 0.5f);
   const SurfaceSamples first = surface_of(band_of(scan, filters).values);
   for (const int threads : {1, 2, 7}) {
     set_thread_count(threads);
