@@ -8,12 +8,15 @@
 #include <vector>
 
 #include "app/kiosk/quiet_hours.h"
-#include "core/base/result.h"
+#include "core/base/text/json_fields.h"
 
 namespace dubsar::app {
 
 /// Texts by language.
 using Texts = std::map<std::string, std::string, std::less<>>;
+/// The member `name` of `object`, whose fields these are: a text, which is English, or texts by language, each of at
+/// most 400 bytes. Missing: none.
+Texts read_texts(JsonFields& fields, const nlohmann::json& object, const char* name);
 
 struct KioskObject {
   std::filesystem::path file, tour{};  ///< surface; tour.h, empty: the one that any tablet has

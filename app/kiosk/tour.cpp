@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kTourFormat = "dubsar tour";
-constexpr std::size_t kMostSteps = 64, kMostLabels = 16, kMostKeys = 1000, kLongestText = 400;
+constexpr std::size_t kMostSteps = 64, kMostLabels = 16, kMostKeys = 1000;
 constexpr double kLongestS = 600.0;
 constexpr std::array<std::string_view, 4> kTourMembers{"format", "version", "steps", "comment"};
 constexpr std::array<std::string_view, 5> kStepMembers{"title", "text", "labels", "stays_s", "keyframes"};
@@ -22,31 +22,6 @@ constexpr std::array<std::string_view, 4> kLabelMembers{"text", "part", "at_mm",
 constexpr std::array<std::string_view, 6> kKeyMembers{"time_s", "camera", "light", "unpack", "style", "parts"};
 constexpr std::array<std::string_view, 3> kCameraMembers{"rotation_wxyz", "zoom", "pan"};
 constexpr std::array<std::string_view, 2> kLightMembers{"azimuth_deg", "elevation_deg"};
-
-template <std::size_t N>
-Result<void> only(const json& object, const std::array<std::string_view, N>& known, const std::string& where) {
-  if (!object.is_object()) return fail(ErrorKind::kBadData, "{} is no JSON object", where);
-  for (const auto& [name, value] : object.items())
-    if (std::find(known.begin(), known.end(), std::string_view(name)) == known.end())
-      return fail(ErrorKind::kBadData, "{}: \"{}\" is unknown", where, name);
-  return {};
-}
-
-Result<Texts> texts(const json& object, const char* name, const std::string& where) {
-  if (!object.contains(name)) return Texts();
-  const json& value = object.at(name);
-  const json by_language = value.is_string() ? json{{"en", value}} : value;
-  if (!by_language.is_object())
-    return fail(ErrorKind::kBadData, "{}: \"{}\" is neither a text nor texts by language", where, name);
-  Texts out;
-  for (const auto& [language, text] : by_language.items()) {
-    if (!text.is_string() || text.get_ref<const std::string&>().size() > kLongestText)
-      return fail(ErrorKind::kBadData, "{}: \"{}\" in {} is no text of at most {} bytes", where, name, language,
-                  kLongestText);
-    out[language] = text.get<std::string>();
-  }
-  return out;
-}
 
 Result<glm::dvec3> place(const json& object, const char* name, const glm::dvec3& otherwise, const std::string& where) {
   if (!object.contains(name)) return otherwise;
@@ -60,27 +35,27 @@ Result<glm::dvec3> place(const json& object, const char* name, const glm::dvec3&
 }
 
 Result<TourLabel> read_label(const json& object, const std::string& where) {
-  DUBSAR_TRY(only(object, kLabelMembers, where));
+  JsonFields fields(object, where);
+  fields.only(kLabelMembers);
   TourLabel out;
-  DUBSAR_ASSIGN(out.text, texts(object, "text", where));
-  if (out.text.empty()) return fail(ErrorKind::kBadData, "{}: \"text\" is missing", where);
+  out.text = read_texts(fields, object, "text");
+  if (out.text.empty()) fields.complain("\"text\" is missing");
+  out.part = fields.text("part", "");
+  DUBSAR_TRY(fields.finish(ErrorKind::kBadData));
   if (!object.contains("at_mm")) return fail(ErrorKind::kBadData, "{}: \"at_mm\" is missing", where);
   DUBSAR_ASSIGN(out.at_mm, place(object, "at_mm", {}, where));
   DUBSAR_ASSIGN(out.normal, place(object, "normal", {0.0, 0.0, 1.0}, where));
   if (!(glm::length(out.normal) > 1e-6)) return fail(ErrorKind::kBadData, "{}: \"normal\" has no direction", where);
   out.normal = glm::normalize(out.normal);
-  JsonFields fields(object, where);
-  out.part = fields.text("part", "");
-  if (const auto done = fields.finish(); !done) return fail(ErrorKind::kBadData, "{}", done.error().message);
   return out;
 }
 
 /// What is not said is as before: the text of a whole film, for parse_film().
 Result<std::vector<Keyframe>> read_keys(const json& object, json& before, const std::string& where) {
   const auto read = [&](const json& key, const std::string& at) -> Result<json> {
-    DUBSAR_TRY(only(key, kKeyMembers, at));
-    if (key.contains("camera")) DUBSAR_TRY(only(key.at("camera"), kCameraMembers, at + ".camera"));
-    if (key.contains("light")) DUBSAR_TRY(only(key.at("light"), kLightMembers, at + ".light"));
+    DUBSAR_TRY(check_members(key, kKeyMembers, at));
+    if (key.contains("camera")) DUBSAR_TRY(check_members(key.at("camera"), kCameraMembers, at + ".camera"));
+    if (key.contains("light")) DUBSAR_TRY(check_members(key.at("light"), kLightMembers, at + ".light"));
     before.merge_patch(key);
     json whole = before;
     before.erase("time_s");
@@ -96,13 +71,13 @@ Result<std::vector<Keyframe>> read_keys(const json& object, json& before, const 
 }
 
 Result<TourStep> read_step(const json& object, json& before, const std::string& where) {
-  DUBSAR_TRY(only(object, kStepMembers, where));
-  TourStep out;
-  DUBSAR_ASSIGN(out.title, texts(object, "title", where));
-  DUBSAR_ASSIGN(out.text, texts(object, "text", where));
   JsonFields fields(object, where);
+  fields.only(kStepMembers);
+  TourStep out;
+  out.title = read_texts(fields, object, "title");
+  out.text = read_texts(fields, object, "text");
   out.stays_s = fields.number("stays_s", 0.0, kLongestS, &out.stays_s);
-  if (const auto done = fields.finish(); !done) return fail(ErrorKind::kBadData, "{}", done.error().message);
+  DUBSAR_TRY(fields.finish(ErrorKind::kBadData));
   DUBSAR_ASSIGN(out.labels, read_list<TourLabel>(object, "labels", 0, kMostLabels, where, read_label));
   DUBSAR_ASSIGN(out.keyframes, read_keys(object, before, where));
   return out;
@@ -120,7 +95,7 @@ json json_of(const TourLabel& label) {
 Result<Tour> parse_tour(std::string_view json_text, std::string_view source) {
   DUBSAR_ASSIGN(const json object, parse_json(json_text, source));
   DUBSAR_TRY(json_version(object, kTourFormat, 1, 1, source));
-  DUBSAR_TRY(only(object, kTourMembers, std::string(source)));
+  DUBSAR_TRY(check_members(object, kTourMembers, std::string(source)));
   Tour out;
   json before{{"camera", {{"rotation_wxyz", {1, 0, 0, 0}}, {"zoom", 1}, {"pan", {0, 0}}}},
               {"light", {{"azimuth_deg", LightPlace().azimuth_deg}, {"elevation_deg", LightPlace().elevation_deg}}},

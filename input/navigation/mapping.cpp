@@ -52,13 +52,10 @@ glm::dvec3 read_vector(JsonFields& fields, const json& object, const char* name)
 
 /// Names in `found` that `known` does not have; the tables of mouse chords and keys are open.
 Result<void> refuse_unknown(const json& found, const json& known, const std::string& where) {
-  if (!found.is_object()) return fail(ErrorKind::kConfig, "{} is {}, expected an object", where, found.type_name());
+  std::vector<std::string_view> names;
+  for (const auto& item : known.get_ref<const json::object_t&>()) names.push_back(item.first);
+  DUBSAR_TRY(check_members(found, names, where, ErrorKind::kConfig));
   for (const auto& [name, value] : found.items()) {
-    if (!known.contains(name)) {
-      std::string names;
-      for (const auto& item : known.items()) names.append(names.empty() ? "" : ", ").append(item.key());
-      return fail(ErrorKind::kConfig, "{}: \"{}\" is not known, expected one of: {}", where, name, names);
-    }
     if (known.at(name).is_object() && name != "keys" && name != "mouse") {
       DUBSAR_TRY(refuse_unknown(value, known.at(name), fmt::format("{}: {}", where, name)));
     } else if (known.at(name).is_object() && !value.is_object()) {

@@ -38,14 +38,6 @@ glm::dquat pointing(const glm::dvec3& direction) {
   return glm::normalize(glm::quat_cast(glm::dmat3(right, glm::cross(back, right), back)));
 }
 
-/// Refuses names of `object` that are not in `known`.
-void only(JsonFields& fields, const json& object, std::initializer_list<std::string_view> known) {
-  if (!object.is_object()) return fields.complain(fmt::format("found {}, expected an object", object.type_name()));
-  for (const auto& item : object.items())
-    if (std::find(known.begin(), known.end(), item.key()) == known.end())
-      fields.complain(fmt::format("\"{}\" is not known, expected one of: {}", item.key(), fmt::join(known, ", ")));
-}
-
 double real(JsonFields& f, const char* name, double low, double high, double fallback) {
   return f.number(name, low, high, &fallback);
 }
@@ -63,7 +55,7 @@ glm::dvec3 place(JsonFields& f, const json& object, const char* name, const glm:
 
 Result<Dropouts> read_dropouts(const json& object, const std::string& where, Dropouts out) {
   JsonFields f(object, where);
-  only(f, object, {"per_s", "shortest_ms", "longest_ms"});
+  f.only({"per_s", "shortest_ms", "longest_ms"});
   out.per_s = real(f, "per_s", 0, 100, out.per_s);
   out.shortest_s = 1e-3 * real(f, "shortest_ms", 1, 60000, 1e3 * out.shortest_s);
   out.longest_s = 1e-3 * real(f, "longest_ms", 1, 60000, 1e3 * out.longest_s);
@@ -75,7 +67,7 @@ Result<Dropouts> read_dropouts(const json& object, const std::string& where, Dro
 Result<HandTrack> read_hand(const json& object, const std::string& where, double duration_s) {
   JsonFields f(object, where);
   HandTrack out;
-  only(f, object, {"chirality", "shoulder_mm", "keys"});
+  f.only({"chirality", "shoulder_mm", "keys"});
   const std::string side = f.text("chirality", "right");
   if (side != "left" && side != "right") f.complain(fmt::format("chirality is \"{}\", expected left or right", side));
   out.chirality = side == "left" ? Chirality::kLeft : Chirality::kRight;
@@ -84,7 +76,7 @@ Result<HandTrack> read_hand(const json& object, const std::string& where, double
   last.t_s = -1;
   for (const json& item : f.list("keys", kMostKeys)) {
     JsonFields k(item, where + ": key " + std::to_string(out.keys.size()));
-    only(k, item, {"t", "at_mm", "grab", "pinch_mm"});
+    k.only({"t", "at_mm", "grab", "pinch_mm"});
     HandKey key;
     key.t_s = k.number("t", 0, duration_s);
     key.at_m = place(k, item, "at_mm", last.at_m);
@@ -102,13 +94,13 @@ Result<HandTrack> read_hand(const json& object, const std::string& where, double
 Result<HeadTrack> read_head(const json& object, const std::string& where, double duration_s) {
   JsonFields f(object, where);
   HeadTrack out;
-  only(f, object, {"ipd_mm", "keys"});
+  f.only({"ipd_mm", "keys"});
   out.ipd_m = 1e-3 * real(f, "ipd_mm", 40, 90, 63);
   HeadKey last;
   last.t_s = -1;
   for (const json& item : f.list("keys", kMostKeys)) {
     JsonFields k(item, where + ": key " + std::to_string(out.keys.size()));
-    only(k, item, {"t", "at_mm"});
+    k.only({"t", "at_mm"});
     HeadKey key{k.number("t", 0, duration_s), place(k, item, "at_mm", last.at_m)};
     if (key.t_s <= last.t_s) k.complain("t does not rise");
     DUBSAR_TRY(k.finish());
@@ -122,7 +114,7 @@ Result<HeadTrack> read_head(const json& object, const std::string& where, double
 Result<InputEvent> read_event(const json& object, const std::string& where, double duration_s) {
   JsonFields f(object, where);
   InputEvent out;
-  only(f, object, {"t", "key", "button", "down", "move_px", "wheel", "shift", "ctrl", "alt"});
+  f.only({"t", "key", "button", "down", "move_px", "wheel", "shift", "ctrl", "alt"});
   out.time = static_cast<TimestampNs>(1e9 * f.number("t", 0, duration_s));
   out.down = f.flag("down", true);
   out.modifiers = static_cast<std::uint8_t>((f.flag("shift", false) ? kShift : 0) |
@@ -199,9 +191,8 @@ Result<Script> parse_script(std::string_view json_text, std::string_view source)
   const std::string where(source);
   JsonFields f(object, where);
   Script out;
-  only(f, object,
-       {"seed", "duration_s", "rate_hz", "latency_ms", "noise_mm", "hand_dropouts", "eye_dropouts", "hands", "heads",
-        "events", "visitor", "bystanders", "bystander_heads"});
+  f.only({"seed", "duration_s", "rate_hz", "latency_ms", "noise_mm", "hand_dropouts", "eye_dropouts", "hands", "heads",
+          "events", "visitor", "bystanders", "bystander_heads"});
   DUBSAR_TRY(f.finish());
   out.seed = static_cast<std::uint64_t>(real(f, "seed", 0, 9e15, 1));
   out.duration_s = real(f, "duration_s", 0.01, 3600, 10);
@@ -240,7 +231,7 @@ Result<Script> parse_script(std::string_view json_text, std::string_view source)
   if (f.has("visitor")) {
     const json& visitor = object.at("visitor");
     JsonFields v(visitor, where + ": visitor");
-    only(v, visitor, {"yaw_deg", "pitch_deg", "zoom", "patience_s"});
+    v.only({"yaw_deg", "pitch_deg", "zoom", "patience_s"});
     out.visitor = VisitorGoal{real(v, "yaw_deg", -180, 180, 0), real(v, "pitch_deg", -90, 90, 0),
                               real(v, "zoom", 0.25, 8, 1), real(v, "patience_s", 1, 3600, 60)};
     DUBSAR_TRY(v.finish());

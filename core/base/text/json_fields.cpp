@@ -1,5 +1,8 @@
 #include "core/base/text/json_fields.h"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
 
 namespace dubsar {
@@ -72,6 +75,31 @@ const json& JsonFields::list(const char* name, std::size_t most) {
   return kEmpty;
 }
 
+std::vector<std::string> JsonFields::texts(const char* name, std::size_t most) {
+  std::vector<std::string> out;
+  for (const json& item : list(name, most)) {
+    if (item.is_string() && !item.get_ref<const std::string&>().empty())
+      out.push_back(item.get<std::string>());
+    else
+      complain(fmt::format("\"{}\" holds something that is no text", name));
+  }
+  return out;
+}
+
+void JsonFields::only(std::span<const std::string_view> known) {
+  if (!object_->is_object()) return complain(fmt::format("found {}, expected an object", object_->type_name()));
+  for (const auto& [name, value] : object_->items())
+    if (std::find(known.begin(), known.end(), std::string_view(name)) == known.end())
+      complain(fmt::format("\"{}\" is unknown, expected one of: {}", name, fmt::join(known, ", ")));
+}
+
+Result<void> check_members(const json& object, std::span<const std::string_view> known, std::string where,
+                           ErrorKind kind) {
+  JsonFields fields(object, std::move(where));
+  fields.only(known);
+  return fields.finish(kind);
+}
+
 Result<void> check_list(const json& object, const char* name, std::size_t least, std::size_t most,
                         const std::string& where) {
   const bool fits = object.is_object() && object.contains(name) && object.at(name).is_array() &&
@@ -81,8 +109,8 @@ Result<void> check_list(const json& object, const char* name, std::size_t least,
               least == 0 ? "at most" : fmt::format("{} to", least), most, name);
 }
 
-Result<void> JsonFields::finish() const {
-  if (!complaint_.empty()) return fail(ErrorKind::kConfig, "{}", complaint_);
+Result<void> JsonFields::finish(ErrorKind kind) const {
+  if (!complaint_.empty()) return fail(kind, "{}", complaint_);
   return {};
 }
 

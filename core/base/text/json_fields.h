@@ -1,7 +1,9 @@
 #pragma once
 // Reads fields of a JSON object with their ranges; the first thing wrong becomes one sentence.
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,17 +27,27 @@ class JsonFields {
   /// A list of at most so many things; empty where it is missing.
   const nlohmann::json& list(const char* name, std::size_t most);
 
+  /// A list of at most so many texts, none of which is empty; missing: none.
+  std::vector<std::string> texts(const char* name, std::size_t most);
+  /// Refuses what is no object, and members of it that are none of these.
+  void only(std::span<const std::string_view> known);
+  void only(std::initializer_list<std::string_view> known) { only(std::span(known.begin(), known.size())); }
+
   bool has(const char* name) const { return object_->is_object() && object_->contains(name); }
   const std::string& where() const noexcept { return where_; }
   void complain(std::string sentence);
   /// The first complaint, or nothing.
-  Result<void> finish() const;
+  Result<void> finish(ErrorKind kind = ErrorKind::kConfig) const;
 
  private:
   const nlohmann::json* find(const char* name) const;
   const nlohmann::json* object_;
   std::string where_, complaint_;
 };
+
+/// JsonFields::only() alone, with errors of this kind.
+Result<void> check_members(const nlohmann::json& object, std::span<const std::string_view> known, std::string where,
+                           ErrorKind kind = ErrorKind::kBadData);
 
 /// kBadData: `name` is no list of `least` to `most` things in this object.
 Result<void> check_list(const nlohmann::json& object, const char* name, std::size_t least, std::size_t most,

@@ -65,11 +65,14 @@ TEST(Tour, WhatIsWrongIsSaidInOneSentenceThatNamesTheStep) {
     return said(wrong);
   };
   EXPECT_EQ(with("/steps/1/keyframes/0/unpack", 3), "t.json: steps[1]: keyframes[0].unpack is 3, expected 0 to 1");
-  EXPECT_EQ(with("/steps/0/keyframes/0/camra", json::object()), "t.json: steps[0]: keyframes[0]: \"camra\" is unknown");
+  EXPECT_EQ(with("/steps/0/keyframes/0/camra", json::object()),
+            "t.json: steps[0]: keyframes[0]: \"camra\" is unknown, expected one of: time_s, camera, light, unpack, "
+            "style, parts");
   EXPECT_EQ(with("/steps/0/keyframes/1/camera", {{"zom", 2}}),
-            "t.json: steps[0]: keyframes[1].camera: \"zom\" is unknown");
+            "t.json: steps[0]: keyframes[1].camera: \"zom\" is unknown, expected one of: rotation_wxyz, zoom, pan");
   EXPECT_EQ(with("/steps/0/keyframes", json::array()), "t.json: steps[0]: no keyframe found, expected at least one");
-  EXPECT_EQ(with("/steps/0/titel", "x"), "t.json: steps[0]: \"titel\" is unknown");
+  EXPECT_EQ(with("/steps/0/titel", "x"),
+            "t.json: steps[0]: \"titel\" is unknown, expected one of: title, text, labels, stays_s, keyframes");
   EXPECT_EQ(with("/steps/0/labels/0/at_mm", {1, 2}), "t.json: steps[0]: labels[0]: \"at_mm\" is no list of 3 numbers");
   EXPECT_EQ(with("/steps/0/title", 7), "t.json: steps[0]: \"title\" is neither a text nor texts by language");
   EXPECT_EQ(with("/version", 2), "t.json: version 2 found, expected 1; a newer dubsar may have written it");
