@@ -205,8 +205,6 @@ void Navigator::use_gestures(TimestampNs now) {
         ++movement_;
         turn_to_next_side(kAxes[static_cast<std::size_t>(event.direction)], now);
       }
-      if (event.kind == GestureKind::kDwell && mapping_.hands.dwell == Action::kSelect)
-        selected_m_ = hands_[h].cursor_m();
       if (event.kind == GestureKind::kDwell && mapping_.hands.dwell == Action::kReset &&
           hold_.mode() == HandMode::kNone && claim(Control::kHands, now)) {
         ++movement_;
@@ -292,7 +290,6 @@ void Navigator::update(TimestampNs now, const InputFrame& frame, const SteeringH
   const double dt_s = last_update_ < 0 ? 0.0 : std::max(0.0, seconds(now - last_update_));
   last_update_ = now;
   selected_m_.reset();
-  claims_.advance(now, hold_.mode() != HandMode::kNone || grip_.holds() || mouse_.dragging || mouse_.pinching);
   use_events(now, frame);
   use_puck(now, frame.puck, std::min(dt_s, 0.1));
   use_grips(now, frame.grips);

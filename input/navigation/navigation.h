@@ -56,8 +56,6 @@ class Navigator {
   Control control() const noexcept { return claims_.control(); }  ///< who steers now
   /// Something moves by itself or is held: a picture made now will soon be old.
   bool moving() const noexcept { return glide_.running() || claims_.control() != Control::kNone || momentum_.moving(); }
-  /// Where a dwelling hand selected something since the last update, metres in the screen frame.
-  const std::optional<glm::dvec3>& selected_m() const noexcept { return selected_m_; }
   const std::array<GestureRecognizer, 2>& hands() const noexcept { return hands_; }
 
   /// True when a key may change the view now: nobody with a better right holds it.
@@ -106,7 +104,6 @@ class Navigator {
   GripHold grip_;
   WornRoom room_;
   Momentum momentum_;
-  std::optional<glm::dvec3> selected_m_;
 };
 
 }  // namespace dubsar
