@@ -41,7 +41,6 @@ class GestureRecognizer {
   const glm::dvec3& velocity_mps() const noexcept { return velocity_mps_; }
   double dwell_progress() const noexcept { return dwell_.progress(); }  ///< 0..1
   /// Where the dwelling hand points, metres in the screen frame.
-  const glm::dvec3& cursor_m() const noexcept { return cursor_m_; }
 
  private:
   void lose(TimestampNs now);
