@@ -40,7 +40,6 @@ class GestureRecognizer {
   const glm::dvec3& position_m() const noexcept { return position_m_; }  ///< of the palm, filtered; stays while held
   const glm::dvec3& velocity_mps() const noexcept { return velocity_mps_; }
   double dwell_progress() const noexcept { return dwell_.progress(); }  ///< 0..1
-  /// Where the dwelling hand points, metres in the screen frame.
 
  private:
   void lose(TimestampNs now);
