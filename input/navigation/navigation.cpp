@@ -289,7 +289,7 @@ void Navigator::update(TimestampNs now, const InputFrame& frame, const SteeringH
                        const SteeringStanding& standing) {
   const double dt_s = last_update_ < 0 ? 0.0 : std::max(0.0, seconds(now - last_update_));
   last_update_ = now;
-  selected_m_.reset();
+  claims_.advance(now, hold_.mode() != HandMode::kNone || grip_.holds() || mouse_.dragging || mouse_.pinching);
   use_events(now, frame);
   use_puck(now, frame.puck, std::min(dt_s, 0.1));
   use_grips(now, frame.grips);
