@@ -50,8 +50,12 @@ Result<WedgesFound> find_wedges(const TriMesh& mesh, const WedgeSearch& search, 
     }
     out.sides = sides;
     const std::vector<PlacedImprint> placed = relief.placed();
-    std::vector<double> misfits;
-    for (const PlacedImprint& one : placed) misfits.push_back(one.misfit);
+    std::vector<double> misfits, widths;
+    for (const PlacedImprint& one : placed) {
+      misfits.push_back(one.misfit);
+      widths.push_back(one.imprint.width());
+    }
+    if (!widths.empty()) out.scale.fitted = median(widths);
     out.scale.misfit = median(misfits);
     for (const PlacedImprint& one : placed) {
       ScriptWedge wedge = measured_wedge(one, out.scale);

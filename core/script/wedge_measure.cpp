@@ -23,7 +23,8 @@ double wedge_confidence(const PlacedImprint& placed, const WedgeScale& scale) {
   };
   const double unlike = scale.misfit > 0.0 ? std::pow(placed.misfit / (kUnlike * scale.misfit), 4.0) : 0.0;
   const double unsure = 0.1 * std::exp(-std::max(0.0, placed.margin) / 4e-5);  // it may as well point another way
-  return explains * within(depth, kLeast, kMost) * within(width, kNarrow, kBroad) * (1.0 - unsure) / (1.0 + unlike);
+  return explains * within(depth, kLeast, kMost) * within(width, kNarrow, kBroad * std::max(1.0, scale.fitted)) *
+         (1.0 - unsure) / (1.0 + unlike);
 }
 
 ScriptWedge measured_wedge(const PlacedImprint& placed, const WedgeScale& scale) {

@@ -12,6 +12,7 @@ namespace dubsar {
 struct WedgeScale {
   double width_mm = 0.0, depth_mm = 0.0;
   double rounding = 0.0;  ///< of inner edges, widths
+  double fitted = 1.0;    ///< median width of its fitted heads, usual widths; above 1 on coarse meshes
   double misfit = 0.0;    ///< of its wedges (PlacedImprint::misfit): noise, and how coarse the mesh is; 0: not known
   UsualImprint usual() const { return {depth_mm / width_mm, rounding}; }
 };

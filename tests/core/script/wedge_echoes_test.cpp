@@ -39,13 +39,24 @@ TEST(WedgeConfidence, FallsWithTheMisfitAgainstWhatIsUsualOnTheTablet) {
   PlacedImprint placed;
   placed.imprint.p[Imprint::kDepth] = std::log(0.5);
   placed.gain = 0.01, placed.margin = 1.0, placed.depth = 0.5;
-  WedgeScale scale{2.0, 1.0, 0.3, 0.03};
+  WedgeScale scale{2.0, 1.0, 0.3, 1.0, 0.03};
   placed.misfit = 0.03;
   EXPECT_GT(wedge_confidence(placed, scale), 0.95);
   placed.misfit = 0.2;
   EXPECT_LT(wedge_confidence(placed, scale), 0.3);
   scale.misfit = 0.17;  // a coarse mesh: all of its wedges fit badly
   EXPECT_GT(wedge_confidence(placed, scale), 0.95);
+}
+
+TEST(WedgeConfidence, FallsWithTheWidthAgainstThatOfTheOthers) {
+  PlacedImprint placed;
+  placed.imprint.p[Imprint::kDepth] = std::log(0.5);
+  placed.imprint.p[Imprint::kWidth] = std::log(1.6);
+  placed.gain = 0.01, placed.margin = 1.0, placed.depth = 0.5;
+  WedgeScale scale{2.0, 1.0, 0.3, 1.0, 0.03};
+  EXPECT_LT(wedge_confidence(placed, scale), 0.3);
+  scale.fitted = 1.4;  // all heads of this mesh look as wide
+  EXPECT_GT(wedge_confidence(placed, scale), 0.9);
 }
 
 }  // namespace
