@@ -55,9 +55,7 @@ struct ToolScene {
   const Document& document() const noexcept { return editor->document(); }
   const Desk& desk() const noexcept { return editor->desk(); }
   /// What the stage shows of a document in a view.
-  Shown shown(const Document& of, const ViewState& view) const {
-    return shown_of(of, view, *options, stage->box_mm());
-  }
+  Shown shown(const Document& of, const ViewState& view) const { return shown_of(of, view, *options, stage->box_mm()); }
   /// What is under this place of the window, with parts where they stand.
   std::optional<Picked> picked_at(const glm::dvec2& at) const;
   /// Where a place that is seen lies in the scan: parts stand apart.

@@ -48,8 +48,8 @@ struct SurfaceModel {
   PartitionTable partitions;
   std::vector<FillPatch> patches;
   /// Of a surface of parts: the mesh is then that of its x-quads between clay and air, `drawing` their triangles, and
-  /// the first patch the contact, whose first vertices are those of the labelled mesh that are not at the air. All three
-  /// follow from places and normals (labelled_model.h).
+  /// the first patch the contact, whose first vertices are those of the labelled mesh that are not at the air. All
+  /// three follow from places and normals (labelled_model.h).
   std::optional<LabelledSurface> labelled;
   std::optional<Triangulation> drawing;
   std::string provenance;  ///< JSON text

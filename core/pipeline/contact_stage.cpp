@@ -36,8 +36,8 @@ Result<void> lay_membranes(SurfaceModel& model, Progress& progress) {
 
 }  // namespace
 
-Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const SettleOptions& settling,
-                          ImportedGrid& imported, StageRun run) {
+Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const SettleOptions& settling, ImportedGrid& imported,
+                          StageRun run) {
   TracedModel traced{std::move(model), {}};
   run.clock.start("contact", "point");
   ContactOptions options;

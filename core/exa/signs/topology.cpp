@@ -277,8 +277,8 @@ Result<BitVolume> decode_signs(const SignChunks& chunks, const Dims& dims, int l
         for (std::int64_t x = 0; x < points.x; ++x) signs.set(x, y, z, eighth.get(x, y, z));
   } else {
     const std::vector<std::uint8_t> lost = lost_with(dims, chunks.lost, chunks.late_bricks);
-    DUBSAR_TRY(decode_bricks({chunks.bricks, dims, eighth, false, chunks.late_bricks, level, box, most_points, lost}, signs,
-                             progress));
+    DUBSAR_TRY(decode_bricks({chunks.bricks, dims, eighth, false, chunks.late_bricks, level, box, most_points, lost},
+                             signs, progress));
     if (!lost.empty()) fill_lost(eighth, dims, level, lost, signs);
   }
   progress.end();

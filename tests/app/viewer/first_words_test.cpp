@@ -33,12 +33,13 @@ TEST(FirstDocument, SaysWhereTheWayUpIsNotSureAndWhichKeyTurnsIt) {
   EXPECT_EQ(first_document(options, blank()).doubt, "") << "it is shown as it was scanned";
   options.work.upright = true;
   options.work.doubt = first_document(options, blank()).doubt;
-  EXPECT_THAT(first_words(options.work), HasSubstr("No writing was found that says which way is up"));
+  EXPECT_THAT(first_words(options.work, false), HasSubstr("No writing was found that says which way is up"));
   for (const char* key : {"Shift+Home", "Ctrl+Shift+Home", "Ctrl+Home"})
-    EXPECT_THAT(first_words(options.work), HasSubstr(key));
+    EXPECT_THAT(first_words(options.work, false), HasSubstr(key));
   options.work.restored = true;
-  EXPECT_THAT(first_words(options.work), ::testing::Not(HasSubstr("Home"))) << "somebody has turned it already";
-  EXPECT_THAT(first_words(SessionWork()), HasSubstr("Drag to turn"));
+  EXPECT_THAT(first_words(options.work, false), ::testing::Not(HasSubstr("Home"))) << "somebody has turned it already";
+  EXPECT_THAT(first_words(SessionWork(), false), HasSubstr("Drag to turn"));
+  EXPECT_THAT(first_words(SessionWork(), true), HasSubstr("close your hand")) << "who wears a headset sees no keys";
 }
 
 }  // namespace
