@@ -9,7 +9,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/document/file_kinds.h"
 #include "app/slices/scan_link.h"
-#include "app/verbs/kept_work.h"
+#include "app/verbs/work_of_surface.h"
 #include "app/viewer/first_document.h"
 #include "core/base/files/file_fingerprint.h"
 #include "core/base/files/file_suffix.h"

@@ -56,8 +56,8 @@ Result<void> Viewer::obey(std::string_view command, std::uint64_t merge) {
     return fail(ErrorKind::kUsage, "{}: there is no surface yet; Ctrl+O opens one", known->name);
   auto done = said_.commands->run(command, *editor_);
   editor_->merge_with(0);
-  words_.help_made = -1;
-  words_.behind = true;
+  present_.words.help_made = -1;
+  present_.words.behind = true;
   follow();
   return done;
 }
@@ -85,13 +85,14 @@ void Viewer::lead(TimestampNs now, const Steered& steered) {
   SessionGuide* const guide = options_.guide;
   if (guide == nullptr) return;
   const std::vector<SourceRow> rows = sources();
-  led_.guidance = guide->lead({now, steered, document(), rows, stage_->window_mm(), stage_->middle_mm(), led_.objects,
-                               led_.trouble, has_surface(), given_.presenter.on_screen()});
-  input_.steering->set_scene(led_.guidance.gestures);
-  for (const std::string& command : led_.guidance.commands) run(command, kGuideSteps);
-  if (!led_.guidance.scene || !led_.guidance.scene->keep) return;
+  present_.led.guidance =
+      guide->lead({now, steered, document(), rows, stage_->window_mm(), stage_->middle_mm(), present_.led.objects,
+                   present_.led.trouble, has_surface(), given_.presenter.on_screen()});
+  input_.steering->set_scene(present_.led.guidance.gestures);
+  for (const std::string& command : present_.led.guidance.commands) run(command, kGuideSteps);
+  if (!present_.led.guidance.scene || !present_.led.guidance.scene->keep) return;
   keep_up();
-  Document next = guided_document(*led_.guidance.scene);
+  Document next = guided_document(*present_.led.guidance.scene);
   next.notes = document().notes;
   editor_->merge_with(kGuideSteps);
   editor_->change(std::move(next), "shown");
@@ -111,8 +112,8 @@ Document Viewer::guided_document(const GuidedScene& scene) const {
 }
 
 void Viewer::set_trouble(const std::string& words) {
-  if (words == led_.trouble) return;
-  led_.trouble = words;
+  if (words == present_.led.trouble) return;
+  present_.led.trouble = words;
   say(words.empty() ? "all panels are there" : words);
 }
 
@@ -125,7 +126,7 @@ void Viewer::presented(TimestampNs now) {
 void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures& figures) {
   if (given_.presenter.take_place_changed())
     if (auto done = displays_->place_changed(); !done) log_warning("{}", done.error().message);
-  words_.figures = figures;
+  present_.words.figures = figures;
   measure_window();
   use_events(now);
   Steering& steering = *input_.steering;
@@ -138,7 +139,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   for (const InputEvent& event : fingers) handle(event);
   use_events(now);
   if (!fingers.empty()) steering.steer(now);
-  for (InputEvent& event : steering.take_keys()) queue_.push_back({std::move(event), true});
+  for (InputEvent& event : steering.take_keys()) input_.queue.push_back({std::move(event), true});
   use_events(now);
   steps_.update(
       now, [this] { return opening(); }, [this](const std::string& command) { return obey(command, 0); });
@@ -159,15 +160,15 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
 /// What the next picture shows.
 void Viewer::show(TimestampNs now, const Steered& steered) {
   const bool film = known_.film.playing();
-  const std::optional<GuidedScene>& scene = led_.guidance.scene;
+  const std::optional<GuidedScene>& scene = present_.led.guidance.scene;
   const Document seen = film ? known_.film.seen(document(), now) : scene ? guided_document(*scene) : document();
   ViewState view = steered.view;
-  view.rotation = led_.guidance.turn * view.rotation;
+  view.rotation = present_.led.guidance.turn * view.rotation;
   if (film || (scene && scene->camera)) view = view_of(seen);
   Shown shown = scene_.shown(seen, view);
-  shown.before = led_.guidance.lines;
+  shown.before = present_.led.guidance.lines;
   shown.lens_zoom = options_.guide == nullptr;  // who leads shows hands, which are as far away as they are
-  shown.glow = led_.guidance.glow;
+  shown.glow = present_.led.guidance.glow;
   scene_.seen = &seen;
   tools_->box.hide(film);
   measure_window();
@@ -175,22 +176,22 @@ void Viewer::show(TimestampNs now, const Steered& steered) {
   for (Tool* const tool : tools_->all()) tool->contribute(shown);
   scene_.seen = nullptr;
   stage_->show(shown, steered.eyes, now);
-  if (options_.guide != nullptr) led_.objects = object_places(*stage_, seen, shown.parts);
+  if (options_.guide != nullptr) present_.led.objects = object_places(*stage_, seen, shown.parts);
   tools_->marks.point();
-  report_.view = shown.view;
-  report_.view.pan = view.pan;  // what stands beside the surface moves the picture, not the view
-  scene_.window.view = report_.view;
-  report_.viewer = stage_->viewer();
-  report_.head = steered.eyes.presence;
-  report_.control = steered.control;
-  report_.moving = stage_->moved();
-  report_.input_age = steered.input_age;
+  present_.report.view = shown.view;
+  present_.report.view.pan = view.pan;  // what stands beside the surface moves the picture, not the view
+  scene_.window.view = present_.report.view;
+  present_.report.viewer = stage_->viewer();
+  present_.report.head = steered.eyes.presence;
+  present_.report.control = steered.control;
+  present_.report.moving = stage_->moved();
+  present_.report.input_age = steered.input_age;
 }
 
 Result<void> Viewer::paint(const Surface& target, Field field) {
   auto painted = stage_->paint(target, field);
   displays_->feed_worn();
-  if (painted) report_.light = stage_->light();
+  if (painted) present_.report.light = stage_->light();
   return painted;
 }
 
@@ -218,7 +219,7 @@ Result<void> Viewer::finish() {
 }
 
 void Viewer::tell(ViewResult& out) const {
-  out.view = report_.view;
+  out.view = present_.report.view;
   out.display = display();
   out.rows = sources();
   out.sources = input_.steering->input().states();

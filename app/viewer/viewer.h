@@ -49,7 +49,7 @@ class Viewer final {
   /// Everything up to `now`: sources, events, commands; then what the next picture shows, whose light reaches the eye
   /// at `display_time`.
   void tick(TimestampNs now, TimestampNs display_time, const RecentFigures& figures);
-  const PictureReport& report() const noexcept { return report_; }
+  const PictureReport& report() const noexcept { return present_.report; }
   Result<bool> work() { return stage_->work(); }  ///< as that of the stage
   Result<void> paint(const Surface& target, Field field);
   void presented(TimestampNs now);
@@ -78,7 +78,7 @@ class Viewer final {
   const Document& document() const noexcept { return editor_->document(); }
   const Desk& desk() const noexcept { return editor_->desk(); }
   /// What whoever leads the session wants; of nobody: nothing.
-  const Guidance& guidance() const noexcept { return led_.guidance; }
+  const Guidance& guidance() const noexcept { return present_.led.guidance; }
   const KeyTable& keys() const noexcept { return *said_.keys; }
   const SlicePanelState& slices() const noexcept { return tools_->slices.state(); }
   std::string display() const { return displays_->name(); }
@@ -116,18 +116,19 @@ class Viewer final {
     SurfaceEvidence evidence;
     FilmThumbnails thumbnails;
   };
+  /// An event that waits for its turn.
+  struct Queued {
+    InputEvent event;
+    bool of_source = false;  ///< a key of a script, a recording or a puck, which no panel or tool takes
+  };
   struct Input {
     WindowEvents mouse;  ///< of the window, on its way to the source of that name
     std::unique_ptr<InputRecorder> recorder;
     std::unique_ptr<Steering> steering;
     std::unique_ptr<SourceSet> sources;
+    std::deque<Queued> queue;
     TimestampNs over_since = -1;
     bool recording_failed = false;  ///< and told
-  };
-  /// An event that waits for its turn.
-  struct Queued {
-    InputEvent event;
-    bool of_source = false;  ///< a key of a script, a recording or a puck, which no panel or tool takes
   };
   struct Words {
     std::string notice;
@@ -139,6 +140,12 @@ class Viewer final {
     Guidance guidance;                ///< of whoever leads the session
     std::vector<ScreenRect> objects;  ///< where what is shown stands
     std::string trouble;              ///< of another panel of the session; empty: none
+  };
+  /// What the picture of this moment tells.
+  struct Present {
+    PictureReport report;
+    Words words;
+    Led led;
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Given given);
   Result<void> open(std::unique_ptr<OutputSink> sink, const std::string& note);
@@ -186,10 +193,7 @@ class Viewer final {
   std::unique_ptr<Editor> editor_;
   std::unique_ptr<Overlay> overlay_;
   StepRunner steps_;
-  PictureReport report_;
-  Words words_;
-  Led led_;
-  std::deque<Queued> queue_;
+  Present present_;
 };
 
 }  // namespace dubsar::app

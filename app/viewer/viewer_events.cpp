@@ -14,13 +14,13 @@ constexpr std::uint64_t kKeySteps = std::uint64_t{1} << 63;  // told apart from 
 
 void Viewer::handle(InputEvent event) {
   if (options_.time.fps > 0) event.time = given_.clock.now();
-  queue_.push_back({std::move(event), false});
+  input_.queue.push_back({std::move(event), false});
 }
 
 void Viewer::use_events(TimestampNs now) {
-  while (!queue_.empty()) {
-    Queued next = std::move(queue_.front());
-    queue_.pop_front();
+  while (!input_.queue.empty()) {
+    Queued next = std::move(input_.queue.front());
+    input_.queue.pop_front();
     use(std::move(next), now);
   }
 }
@@ -32,7 +32,8 @@ void Viewer::use(Queued next, TimestampNs now) {
   if (next.of_source) return use_key(event, true);
   if (event.at) scene_.window.pointer = *event.at;
   tools_->navigate.see(event);
-  if (event.kind == EventKind::kKey && words_.behind) update_overlay(now);  // it may be typed into what was opened
+  if (event.kind == EventKind::kKey && present_.words.behind)
+    update_overlay(now);  // it may be typed into what was opened
   if (overlay_->take(event, scene_.window.layout)) {
     stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
     if ((event.kind == EventKind::kButton && event.down) || event.key == "enter") ++scene_.window.presses;

@@ -113,7 +113,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   for (Tool* const tool : tools_->all()) tool->let_go();
   known_.film.stop();
   tools_->light.begin();
-  words_.behind = true;
+  present_.words.behind = true;
   input_.steering->set_home(home_of(document()));
   // What was coarse stood as it was scanned: it turns to where its writing is upright.
   input_.steering->go_to(view_of(document()), given_.clock.now(), files_.coarse != nullptr);

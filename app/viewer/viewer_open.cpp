@@ -114,7 +114,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
                          [this] {  // it may have been a touch panel, or the mouse with a button down
                            for (InputEvent& event : known_.touch.let_go(given_.clock.now())) handle(std::move(event));
                            input_.steering->let_go_of_mouse();
-                           words_.help_made = -1;
+                           present_.words.help_made = -1;
                          },
                          [this] { return may_end(); }});
   ask_the_session();

@@ -27,8 +27,8 @@ double ui_scale(const Desk& desk, const GlfwWindow* window) {
 
 void Viewer::say(std::string text) {
   if (!options_.around.notices) return;
-  words_.notice = std::move(text);
-  words_.since = given_.clock.now();
+  present_.words.notice = std::move(text);
+  present_.words.since = given_.clock.now();
 }
 
 /// Pixels of the panels' layout, and how large letters on the surface are: as those of the panels, and never smaller
@@ -39,9 +39,9 @@ void Viewer::measure_window() {
   ToolWindow& window = scene_.window;
   window.layout = Overlay::layout(stage_->traits().view.height, mm, scale);
   window.letters = std::max(1.0, height / window.layout.y);
-  if (led_.guidance.picture)
-    window.letters = std::max(window.letters,
-                              letters_size(led_.guidance.picture->letter_mm, height, height / mm.y) / kMarkLettersPx);
+  if (present_.led.guidance.picture)
+    window.letters = std::max(
+        window.letters, letters_size(present_.led.guidance.picture->letter_mm, height, height / mm.y) / kMarkLettersPx);
   window.slices =
       slice_rects(static_cast<float>(window.layout.x), static_cast<float>(window.layout.y), document().scan.large);
   overlay_->set_scale(scale);
@@ -52,7 +52,8 @@ PanelState Viewer::panel_state(TimestampNs now) {
   out.line.title = title().empty() ? "dubsar" : title();
   out.line.display = display();
   if (has_surface())
-    out.line.side = kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, document().home.rotation))];
+    out.line.side =
+        kSideNames[static_cast<std::size_t>(facing_side(present_.report.view.rotation, document().home.rotation))];
   out.line.undo = editor_->history().undo_words();
   out.line.redo = editor_->history().redo_words();
   out.document = document();
@@ -67,10 +68,10 @@ PanelState Viewer::panel_state(TimestampNs now) {
   const double scale =
       glm::length(glm::dvec3(stage_->screen_from_model()[0]));  // of the screen for one mm of the object
   out.mm_per_px = window.y / (scene_.window.layout.y * scale);
-  out.faint = report_.control == Control::kMouse || report_.control == Control::kHands;
+  out.faint = present_.report.control == Control::kMouse || present_.report.control == Control::kHands;
   if (desk().drawer != "film") return out;
   // One at a time, while nothing else moves.
-  const bool rests = !report_.moving && !out.playing && !out.faint;
+  const bool rests = !present_.report.moving && !out.playing && !out.faint;
   out.thumbnails = known_.thumbnails.of(document().keyframes, *stage_, rests, [&](const Keyframe& key) {
     Document seen = document();
     show_keyframe(seen, key);
@@ -83,14 +84,14 @@ PanelState Viewer::panel_state(TimestampNs now) {
 /// The pages of help, twice a second.
 void Viewer::tell_help(OverlayText& text, TimestampNs now) {
   if (!desk().help) return text.help.clear();
-  if (words_.help_made >= 0 && now - words_.help_made < kHelpRefreshNs) return;
+  if (present_.words.help_made >= 0 && now - present_.words.help_made < kHelpRefreshNs) return;
   StateFigures state;
   state.display = display();
   state.traits = stage_->traits();
-  state.head = report_.head;
-  state.eyes_mm = report_.viewer.centre_mm();
-  state.interval_ms = words_.figures.interval_ms;
-  state.input_age_ms = words_.figures.input_age_ms;
+  state.head = present_.report.head;
+  state.eyes_mm = present_.report.viewer.centre_mm();
+  state.interval_ms = present_.words.figures.interval_ms;
+  state.input_age_ms = present_.words.figures.input_age_ms;
   state.sources = sources();
   text.help = state_page(state);
   HelpDevices there{false, state.traits.views == 2 || state.traits.fields == 2};
@@ -99,28 +100,28 @@ void Viewer::tell_help(OverlayText& text, TimestampNs now) {
     (is_touch_panel(row) ? there.touch : there.more) = true;
   }
   for (HelpSection& section : help_page(options_.mapping, keys(), there)) text.help.push_back(std::move(section));
-  words_.help_made = now;
+  present_.words.help_made = now;
 }
 
 void Viewer::update_overlay(TimestampNs now) {
-  words_.behind = false;
+  present_.words.behind = false;
   OverlayText text = overlay_->text();
   tell_help(text, now);
-  text.gallery = led_.guidance.picture;
+  text.gallery = present_.led.guidance.picture;
   text.panels.reset();
   const bool files = desk().choosing.open || opening();
   if ((desk().panels || desk().palette || files) && !desk().help) text.panels = panel_state(now);
   text.legend = desk().legend && has_surface() && !stage_->measuring()
-                    ? legend_of(scene_.shown(document(), report_.view).style)
+                    ? legend_of(scene_.shown(document(), present_.report.view).style)
                     : std::nullopt;
   text.light.reset();
   const TimestampNs moved = tools_->light.moved();
   if (options_.around.notices && moved >= 0 && now - moved < kBallNs)
-    text.light = LightPlace{report_.view.light_azimuth_deg, report_.view.light_elevation_deg};
+    text.light = LightPlace{present_.report.view.light_azimuth_deg, present_.report.view.light_elevation_deg};
   text.box = tools_->box.picture();
-  const TimestampNs age = now - words_.since;
-  const bool over = words_.since < 0 || age >= kNoticeNs;
-  text.notice = over ? std::string() : words_.notice;
+  const TimestampNs age = now - present_.words.since;
+  const bool over = present_.words.since < 0 || age >= kNoticeNs;
+  text.notice = over ? std::string() : present_.words.notice;
   text.notice_opacity =
       over ? 1.0 : std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
   if (const auto share = stage_->measuring()) {

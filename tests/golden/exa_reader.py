@@ -187,7 +187,7 @@ def constants():
     tables, numbers = {}, None
     for line in lines[1:]:
         name, _, count = line.rpartition(" ")
-        if "model" in name:
+        if line[:1].isalpha():
             numbers = tables.setdefault(name, [])
         else:
             numbers.extend(int(v) for v in line.split())

@@ -1,4 +1,4 @@
-#include "app/verbs/kept_work.h"
+#include "app/verbs/work_of_surface.h"
 
 #include <fmt/format.h>
 
