@@ -40,12 +40,6 @@ struct LightRequest {
   double radius = 64.0;  ///< grid steps
 };
 
-/// How parts are closed where they touch, and the mesh that is written where no surface file holds that.
-struct ContactRequest {
-  ContactMesh mesh = ContactMesh::kPatches;
-  std::string parts;
-};
-
 struct ProcessRequest {
   std::vector<std::string> inputs;
   std::string in, out;  ///< of one scan
@@ -55,7 +49,7 @@ struct ProcessRequest {
   PipelineOptions pipeline;
   double threshold = 0.0, sharpen = 1.0;
   LightRequest light;
-  ContactRequest contact;
+  ContactMesh contact = ContactMesh::kLabels;  ///< how parts are closed where they touch
   Without without;
   Room room;
 };
@@ -112,12 +106,9 @@ void add_surface_options(Arguments command, ProcessRequest& options) {
   group.value("--concavity", p.segment.concavity, "k_min per grid step below which --segment concavity cuts");
   group.flag("--no-fill-holes", options.without.holes, "leave the holes that segmentation cuts");
   group.flag("--no-contact", options.without.contact, "leave smooth patches where tablet and envelope touch");
-  group.choice<ContactMesh>(
-      "--contact", options.contact.mesh, choices_of(kContactMeshes),
-      "how parts are closed where they touch: patches (default), or labels, one mesh of all parts: "
-      "a trial");
-  group.writes("--parts", options.contact.parts, FileFormat::kMesh,
-               "mesh (PLY, STL, OBJ, GLB or 3MF) that is written in place of the EXA file, with --contact labels");
+  group.choice<ContactMesh>("--contact", options.contact, choices_of(kContactMeshes),
+                            "how parts are closed where they touch: labels (default), one mesh of all parts that "
+                            "crosses itself nowhere, or patches between the surfaces");
   group.flag("--no-ao", options.without.ao, "skip ambient occlusion");
   group.choice<OcclusionEngine>("--ao-by", options.light.engine, choices_of(kOcclusionEngines),
                                 "what rays of ambient occlusion meet: march (default), distances on the grid, or "
@@ -188,13 +179,8 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
   }
   if (!options.room.scratch.empty()) p.import.budget.scratch_folder = options.room.scratch;
   if (options.without.resample) p.detail = Detail::kScan;
-  const bool labels = options.contact.mesh == ContactMesh::kLabels;
-  p.contact = options.contact.mesh;
+  p.contact = options.contact;
   if (options.without.contact) p.contact.reset();
-  const bool parts = !options.contact.parts.empty();
-  if (parts && !labels)
-    return fail(ErrorKind::kUsage, "--parts is for --contact labels; else make the EXA file and take dubsar export");
-  if (parts) DUBSAR_TRY(mesh_format_from_path(options.contact.parts));
   p.sample.closed = !options.without.cap;
   p.fill_holes = !options.without.holes;
   if (options.without.ao)
@@ -211,13 +197,7 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
         "; allow more with --memory, take --detail half where it is not taken yet, a part of the scan with --crop, or "
         "fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
-  if (parts) {
-    DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
-    DUBSAR_TRY(write_mesh(options.contact.parts, mesh, {}, progress));
-    options.out = options.contact.parts;
-  } else {
-    DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
-  }
+  DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
   result.model = {};  // it is in the file
   DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(result.mesh, result.report.mesh.watertight()));
   VerbResult out;

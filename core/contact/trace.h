@@ -20,7 +20,7 @@ namespace dubsar {
 /// How the parts are closed where they touch.
 enum class ContactMesh {
   kPatches,  ///< a patch between the surfaces, which is got apart from them
-  kLabels,   ///< one mesh of labelled grid points (labelled_contact.h): a trial, which no EXA file holds yet
+  kLabels,   ///< one mesh of labelled grid points (labelled_contact.h), which crosses itself nowhere
 };
 inline constexpr EnumName<ContactMesh> kContactMeshes[] = {{ContactMesh::kPatches, "patches"},
                                                            {ContactMesh::kLabels, "labels"}};

@@ -226,6 +226,7 @@ Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& prog
 
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress) {
   PipelineOptions watched = options;
+  if (watched.contact && watched.exa_profile == ExaProfile::kPaper) watched.contact = ContactMesh::kPatches;
   watched.import.same_files = std::make_shared<std::vector<FileIdentity>>();
   Result<PipelineResult> result = run_stages(watched, progress);
   // What a scan that changes is found to be, also damaged, is no finding about it.

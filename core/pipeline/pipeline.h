@@ -28,8 +28,8 @@ struct PipelineOptions {
   ExaProfile exa_profile = ExaProfile::kCompact;
   SegmentOptions segment;
   bool fill_holes = true;
-  /// With filled holes only; none: the smooth patches stay.
-  std::optional<ContactMesh> contact = ContactMesh::kPatches;
+  /// With filled holes only; none: the smooth patches stay. The paper's profile holds no labels: patches there.
+  std::optional<ContactMesh> contact = ContactMesh::kLabels;
   std::optional<OcclusionOptions> occlusion = OcclusionOptions{};  ///< none: no ambient light
 };
 

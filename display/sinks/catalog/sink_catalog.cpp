@@ -43,7 +43,9 @@ constexpr std::array<SinkBackend, 12> kSinks{{
      "two views in turn, one at each refresh, for projectors and glasses of 100 Hz and more: left_first "
      "(default), right_first",
      make_shutter_sink},
-    {"openxr", "head-mounted displays through OpenXR, life size on a table before the wearer: distance=, height=",
+    {"openxr",
+     "head-mounted displays through OpenXR, life size on a table before the wearer: distance=, height=, "
+     "blend=opaque|alpha|additive",
      make_openxr_sink, false},
     {"quilt",
      "all views of a Looking Glass panel as tiles: PROFILE or columns=,rows=,width=,height=,aspect=,cone=,"

@@ -106,14 +106,15 @@ Volume<float> turned_cylinder(double noise, bool layers) {
   const Dims d{120, 120, 64};
   Volume<float> scan(d);
   std::mt19937 random(7);
-  std::normal_distribution<float> normal(0.0f, static_cast<float>(noise));
+  std::normal_distribution<float> normal;
   for (std::int64_t i = 0; i < d.count(); ++i) {
-    const double x = static_cast<double>(i % d.x) - 59.5, y = static_cast<double>(i / d.x % d.y) - 59.5,
-                 z = static_cast<double>(i / d.slice());
+    const std::int64_t row = i / d.x % d.y, slice = i / d.slice();
+    const double x = static_cast<double>(i % d.x) - 59.5, y = static_cast<double>(row) - 59.5;
+    const auto z = static_cast<double>(slice);
     const double r = std::hypot(x, y), outer = 48.0 + 2.0 * std::sin(z / 3.0);
     const double clay = std::clamp(outer - r + 0.5, 0.0, 1.0) * std::clamp(r - 9.5, 0.0, 1.0);
     const double layer = layers && std::abs(std::remainder(r, 7.0)) < 0.8 ? 0.08 : 0.0;
-    scan.voxels[i] = static_cast<float>(clay * (1.0 + layer)) + normal(random);
+    scan.voxels[i] = static_cast<float>(clay * (1.0 + layer) + noise * normal(random));
   }
   return scan;
 }
