@@ -1,11 +1,11 @@
 #include "app/viewer/viewer_place.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "core/base/numbers/inch.h"
+#include "core/base/system/utc_day.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 
@@ -120,10 +120,6 @@ Result<void> ViewerPlace::play_film(std::optional<double> from_s) {
   return {};
 }
 
-std::string ViewerPlace::today() const {
-  const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now()));
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(day.year()), static_cast<unsigned>(day.month()),
-                     static_cast<unsigned>(day.day()));
-}
+std::string ViewerPlace::today() const { return utc_day(std::time(nullptr)); }
 
 }  // namespace dubsar::app

@@ -13,17 +13,12 @@
 #include "core/base/files/atomic_file.h"
 #include "core/base/files/file_fingerprint.h"
 #include "core/base/files/file_lock.h"
+#include "core/base/system/utc_day.h"
 
 namespace dubsar {
 namespace {
 namespace fs = std::filesystem;
 constexpr std::string_view kOrphan = ".orphan-";
-
-std::string day_of(std::time_t time) {
-  std::tm day{};
-  ::gmtime_r(&time, &day);
-  return fmt::format("{:04}-{:02}-{:02}", day.tm_year + 1900, day.tm_mon + 1, day.tm_mday);
-}
 
 Result<std::optional<std::string>> text_of(const fs::path& file, std::int64_t max_bytes) {
   std::error_code error;
@@ -73,7 +68,7 @@ Result<fs::path> KeptFile::set_aside() {
   DUBSAR_ASSIGN(const FileLock lock, FileLock::take(file_));
   struct stat info {};
   if (::lstat(file_.c_str(), &info) != 0) return fail_errno(errno, fmt::format("cannot inspect {}", file_.string()));
-  const std::string first = fmt::format("{}{}{}", file_.string(), kOrphan, day_of(info.st_mtime));
+  const std::string first = fmt::format("{}{}{}", file_.string(), kOrphan, utc_day(info.st_mtime));
   for (int number = 1; number < 10'000; ++number) {
     const fs::path aside = number == 1 ? fs::path(first) : fs::path(fmt::format("{}-{}", first, number));
     if (::renameat2(AT_FDCWD, file_.c_str(), AT_FDCWD, aside.c_str(), RENAME_NOREPLACE) != 0) {

@@ -21,14 +21,14 @@ double pressed(double x, double y, double angle, double width, double depth, dou
 
 DepthSamples samples_of(double angle, double noise, unsigned seed) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0.0, noise);
+  std::normal_distribution<double> normal;
   DepthSamples out;
   for (int y = -18; y <= 18; ++y)
     for (int x = -18; x <= 18; ++x) {
       out.x.push_back(static_cast<float>(x / 8.0));
       out.y.push_back(static_cast<float>(y / 8.0));
-      out.depth.push_back(
-          static_cast<float>(pressed(x / 8.0 - 0.1, y / 8.0 + 0.07, angle, 1.1, 0.5, 0.3, 1.1) + normal(random)));
+      out.depth.push_back(static_cast<float>(pressed(x / 8.0 - 0.1, y / 8.0 + 0.07, angle, 1.1, 0.5, 0.3, 1.1) +
+                                             noise * normal(random)));
       out.weight.push_back(1.0f);
       out.level.push_back(0.0f);
       out.others.push_back(0.0f);
