@@ -1,5 +1,7 @@
 #include "core/exa/container.h"
 
+#include <algorithm>
+
 #include "core/base/numbers/bytes.h"
 #include "core/exa/chunks.h"
 
@@ -25,11 +27,9 @@ const ExaRow* ExaTable::find(std::string_view type) const noexcept {
 }
 
 std::uint16_t exa_major_of(std::span<const ExaBlock> blocks) {
-  for (const ExaBlock& block : blocks)
-    if (block.type == "LABL" ||
-        (block.type == "HEAD" && block.bytes.find("\"far_sides\":true,\"vertices\":") != std::string::npos))
-      return kExaMajor;
-  return kExaMajorBefore;
+  std::uint16_t major = kExaMajorBefore;
+  for (const ExaBlock& block : blocks) major = std::max(major, block.needs);
+  return major;
 }
 
 std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major, std::uint16_t minor) {

@@ -46,7 +46,8 @@ struct ExaBlock {
   std::string type;  ///< four characters
   std::uint16_t codec = 0, flags = 0;
   std::uint32_t chunks = 0;
-  std::string bytes;  ///< join_chunks()
+  std::string bytes;                      ///< join_chunks()
+  std::uint16_t needs = kExaMajorBefore;  ///< the oldest version whose readers can use it
 };
 
 struct ExaRow {

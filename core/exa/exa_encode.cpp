@@ -99,6 +99,8 @@ std::span<const float> floats_of(const std::vector<glm::vec3>& items) {
   return {reinterpret_cast<const float*>(items.data()), items.size() * 3};
 }
 
+constexpr auto kLabelled = static_cast<std::uint16_t>(ExaFeature::kLabels);
+
 /// Has the grid a last slice that begins where a brick would?
 bool ends_with_a_brick(const Dims& dims) {
   const auto ends = [](std::int64_t points) { return points > 1 && points % kBrickCells == 1; };
@@ -107,9 +109,10 @@ bool ends_with_a_brick(const Dims& dims) {
 
 class BlockList {
  public:
-  void add(const char* type, bool required, const std::vector<std::string>& chunks) {
+  void add(const char* type, bool required, const std::vector<std::string>& chunks,
+           std::uint16_t needs = kExaMajorBefore) {
     blocks_.push_back({type, kCodec, required ? kExaRequired : std::uint16_t{0},
-                       static_cast<std::uint32_t>(chunks.size()), join_chunks(chunks)});
+                       static_cast<std::uint32_t>(chunks.size()), join_chunks(chunks), needs});
   }
   void add(BlockList others) {
     for (ExaBlock& block : others.blocks_) blocks_.push_back(std::move(block));
@@ -180,7 +183,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   if (model.labelled) {
     DUBSAR_ASSIGN(const LabelledCode code, encode_labelled(model, progress));
     DUBSAR_TRY(check_model(model, code.rebuilt));
-    labelled.add("LABL", true, code.labels);
+    labelled.add("LABL", true, code.labels, kLabelled);
     labelled.add("LOFS", true, code.offsets);
     labelled.add("LEVI", true, code.evidence);
     if (!code.escapes.empty()) positions.add("ESCP", true, code.escapes);
@@ -213,7 +216,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
 
   BlockList blocks;
   DUBSAR_ASSIGN(std::string text, exa_header_json(header));
-  blocks.add("HEAD", true, {std::move(text)});
+  blocks.add("HEAD", true, {std::move(text)}, header.sums.far_sides ? kLabelled : kExaMajorBefore);
   if (!model.partitions.empty()) {
     DUBSAR_ASSIGN(std::string table, exa_partitions_json(model.partitions));
     blocks.add("PART", false, {std::move(table)});
