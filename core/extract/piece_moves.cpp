@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <vector>
 
 #include "core/base/numbers/sort_unique.h"
@@ -49,29 +50,36 @@ class CellMoves {
     if (!look.touches(*cell)) return;
     vertices_.clear();
     for (std::uint32_t v = first; v < first + cell->count; ++v) vertices_.push_back(v);
-    if (move(*cell, look, false)) return;
+    if (move(*cell, look, Around::kStays)) return;
     for (std::uint32_t v = first; v < first + cell->count; ++v)
       for (const std::uint32_t q : mesh_.quads_of(v)) {
         const Polygon polygon = mesh_.polygon(q);
         vertices_.insert(vertices_.end(), polygon.vertex.begin(), polygon.vertex.begin() + polygon.size);
       }
     sort_unique(vertices_);
-    move(*cell, look, true);
+    if (move(*cell, look, Around::kSafe)) return;
+    move(*cell, look, Around::kTried);
   }
 
  private:
-  /// Tries places for the vertices of a cell until nothing around vertices_ touches that did not before; `retreat`:
-  /// with all of these where they are safe.
-  bool move(const CellPieces& cell, CellLook& look, bool retreat) {
+  /// What becomes of the vertices around a cell while places for its own are tried: they stay, are where they are safe,
+  /// or are tried as its own are.
+  enum class Around : std::uint8_t { kStays, kSafe, kTried };
+
+  /// Tries places for the vertices of a cell until nothing around vertices_ touches that did not before.
+  bool move(const CellPieces& cell, CellLook& look, Around around) {
     find_near();
     touched_.clear();
     for (const CellPieces* other : near_) touched_.push_back(look.touches(*other));
     std::vector<glm::vec3> before;
     for (const std::uint32_t v : vertices_) before.push_back(mesh_.positions[v]);
-    if (retreat)
+    if (around == Around::kSafe)
       for (const std::uint32_t v : vertices_) mesh_.positions[v] = place_(v, kept_in_cell(safe_[v], safe_[v]));
-    std::vector<Crossings> crossings(cell.count);
-    for (std::uint32_t i = 0; i < cell.count; ++i) crossings[i] = crossings_of(cell.first + i);
+    std::vector<std::uint32_t> own(cell.count);
+    std::iota(own.begin(), own.end(), cell.first);
+    const std::vector<std::uint32_t>& tried = around == Around::kTried ? vertices_ : own;
+    std::vector<Crossings> crossings;
+    for (const std::uint32_t v : tried) crossings.push_back(crossings_of(v));
     std::uint64_t random = cell.first;
     const auto next = [&random] {  // [Steele 2014], 24 bits
       random += 0x9E3779B97F4A7C15U;
@@ -81,8 +89,8 @@ class CellMoves {
     };
     const auto drawn = static_cast<int>(kDrawn.size());
     for (int trial = 0; trial < drawn + kMeans; ++trial) {
-      for (std::uint32_t i = 0; i < cell.count; ++i) {
-        const std::uint32_t v = cell.first + i;
+      for (std::size_t i = 0; i < tried.size(); ++i) {
+        const std::uint32_t v = tried[i];
         const Crossings& c = crossings[i];
         if (c.all.empty()) continue;
         glm::dvec3 wanted = mean(c.all);
