@@ -75,7 +75,7 @@ class WebcamReader final : public SourceReader {
 };
 
 Result<std::unique_ptr<FaceDetector>> make_detector(const std::filesystem::path& models) {
-  auto network = make_network_face_detector(models / kFaceModel);
+  auto network = make_network_face_detector(models);
   if (network || network.error().kind != ErrorKind::kNoInput) return network;
   auto cascade = make_cascade_face_detector(kCascade);
   if (cascade) return cascade;

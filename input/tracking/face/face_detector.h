@@ -37,8 +37,8 @@ class FaceDetector {
 
 /// BlazeFace (short range, 128 x 128; Bazarevsky et al. 2019) in two passes: the whole picture, then a square
 /// of twice the face's box, which divides the noise of the eyes' distance by two to three. About 2.5 ms a
-/// pass on one core. `model`: the .tflite file. Errors as Network::read.
-Result<std::unique_ptr<FaceDetector>> make_network_face_detector(const std::filesystem::path& model);
+/// pass on one core. `folder`: with kFaceModel. Errors as Network::read.
+Result<std::unique_ptr<FaceDetector>> make_network_face_detector(const std::filesystem::path& folder);
 
 /// Without a network: Viola and Jones' cascade; the eyes' places follow from the box, so that depth is coarse
 /// and yaw unknown. `cascade`: OpenCV's haarcascade_frontalface_default.xml.

@@ -9,7 +9,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kInput = 128;
+constexpr int kInput = kFaceModel.size_px;
 constexpr std::size_t kPoints = 6;  // right eye, left eye, nose tip, mouth, right ear, left ear
 constexpr double kLeastScore = 0.5, kMostOverlap = 0.3;
 constexpr double kCropSides = 2.0;  // of the face's box, for the second pass
@@ -70,11 +70,8 @@ class NetworkFaceDetector final : public FaceDetector {
 
 }  // namespace
 
-Result<std::unique_ptr<FaceDetector>> make_network_face_detector(const std::filesystem::path& model) {
-  DUBSAR_ASSIGN(Network network, Network::read(model));
-  if (network.rows() != kInput || network.columns() != kInput || network.channels() != 3)
-    return fail(ErrorKind::kBadData, "{}: takes {} x {} pixels, expected 128 x 128 (BlazeFace short range)",
-                model.string(), network.columns(), network.rows());
+Result<std::unique_ptr<FaceDetector>> make_network_face_detector(const std::filesystem::path& folder) {
+  DUBSAR_ASSIGN(Network network, Network::read(folder, kFaceModel));
   return std::make_unique<NetworkFaceDetector>(std::move(network));
 }
 

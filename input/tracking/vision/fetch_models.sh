@@ -4,6 +4,7 @@
 # usage: fetch_models.sh [--from FOLDER] [--photographs] [--timeout SECONDS]
 set -euo pipefail
 
+here=$(dirname "$(realpath "$0")")
 given=/nonexistent photographs= seconds=120
 while [ $# -gt 0 ]; do
   case "$1" in
@@ -36,27 +37,35 @@ package() {
   echo "$file"
 }
 
-# has FILE BYTES
-has() { [ -f "$1" ] && [ "$(stat -c %s "$1")" -eq "$2" ]; }
+# network NAME BYTES: whether it is here; made of the .tflite file, if that lies beside it or in the work folder.
+network() {
+  local onnx=$data/models/$1.onnx tflite
+  if [ -f "$onnx" ] && [ "$(stat -c %s "$onnx")" -eq "$2" ]; then return 0; fi
+  for tflite in "$work/$1.tflite" "$data/models/$1.tflite"; do
+    [ -f "$tflite" ] || continue
+    /usr/bin/python3 "$here/tflite_to_onnx.py" "$tflite" "$work/$1.onnx" || continue
+    [ "$(stat -c %s "$work/$1.onnx")" -eq "$2" ] || continue
+    mv "$work/$1.onnx" "$onnx"
+    return 0
+  done
+  return 1
+}
+faces() { network face_detection_short_range 415380; }
+hands() { network palm_detection_lite 3865900 && network hand_landmark_lite 4058467; }
 
-face=$data/models/face_detection_short_range.tflite
-palm=$data/models/palm_detection_lite.tflite
-hand=$data/models/hand_landmark_lite.tflite
-
-if ! has "$face" 229032; then
+if ! faces; then
   tgz=$(package @mediapipe/face_detection 0.4.1646425229 \
     69e08df9f440a23bfd721dcd5e8acfeabe6d70654b477fe00b51e6b6a074584641457add3faff75bfb06474747af5893eae7a22bde46f4f5636f3168b1ffe1ae)
-  tar -xzOf "$tgz" package/face_detection_short_range.tflite >"$work/face"
-  mv "$work/face" "$face"
+  tar -xzOf "$tgz" package/face_detection_short_range.tflite >"$work/face_detection_short_range.tflite"
+  faces
 fi
-if ! { has "$palm" 1985440 && has "$hand" 2071408; }; then
+if ! hands; then
   tgz=$(package @mediapipe/hands 0.4.1675469240 \
     1b1a19bcbd669a12711718eeca3eef9c2fbe248b889c6ce71c18a7e5ced94aafd16dc9c6c9f11c26b90cfdb32ee4ad4ccffd8aa3ebc45faffec1ec261073eb1e)
-  tar -xzOf "$tgz" package/hand_landmark_lite.tflite >"$work/hand"
+  tar -xzOf "$tgz" package/hand_landmark_lite.tflite >"$work/hand_landmark_lite.tflite"
   # The palm network is the last part of a file of several.
-  tar -xzOf "$tgz" package/hands_solution_packed_assets.data | tail -c +2341292 >"$work/palm"
-  mv "$work/hand" "$hand"
-  mv "$work/palm" "$palm"
+  tar -xzOf "$tgz" package/hands_solution_packed_assets.data | tail -c +2341292 >"$work/palm_detection_lite.tflite"
+  hands
 fi
 if [ -n "$photographs" ] && [ ! -f "$data/photographs/sample6.jpg" ]; then
   tgz=$(package @vladmandic/face-api 1.7.15 \
@@ -66,8 +75,8 @@ if [ -n "$photographs" ] && [ ! -f "$data/photographs/sample6.jpg" ]; then
   mv "$work"/demo/sample?.jpg "$data/photographs/"
 fi
 cat >"$data/models/LICENSE.txt" <<'TEXT'
-face_detection_short_range.tflite, palm_detection_lite.tflite, hand_landmark_lite.tflite: MediaPipe, Google, Apache-2.0
+face_detection_short_range.onnx, palm_detection_lite.onnx, hand_landmark_lite.onnx: MediaPipe, Google, Apache-2.0
 (https://www.apache.org/licenses/LICENSE-2.0), taken from the npm packages @mediapipe/face_detection 0.4.1646425229 and
-@mediapipe/hands 0.4.1675469240.
+@mediapipe/hands 0.4.1675469240 and converted from TensorFlow Lite to ONNX.
 TEXT
 echo "networks for faces and hands: $data/models (MediaPipe, Apache-2.0)" >&2

@@ -5,11 +5,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::array<ModelFile, 3> kFiles{{
-    {kFaceModel, "faces from a webcam", "@mediapipe/face_detection 0.4.1646425229", 229032},
-    {kPalmModel, "hands from a webcam: where they are", "@mediapipe/hands 0.4.1675469240", 1985440},
-    {kHandModel, "hands from a webcam: their joints", "@mediapipe/hands 0.4.1675469240", 2071408},
-}};
+constexpr std::array<ModelFile, 3> kFiles{kFaceModel, kPalmModel, kHandModel};
 
 }  // namespace
 

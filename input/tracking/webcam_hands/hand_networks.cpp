@@ -12,7 +12,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kPalmInput = 192, kHandInput = 224;
+constexpr int kPalmInput = kPalmModel.size_px, kHandInput = kHandModel.size_px;
 constexpr std::size_t kPalmPoints = 7;  // wrist, knuckles of index, middle, ring and little finger, two of the thumb
 constexpr double kLeastScore = 0.5, kMostOverlap = 0.3;
 // the square about a hand, from its palm's box and from its landmarks: what the networks were trained with
@@ -98,12 +98,8 @@ SquareCrop HandSeen::next_crop() const noexcept {
 }
 
 Result<std::unique_ptr<HandNetworks>> make_hand_networks(const std::filesystem::path& folder) {
-  DUBSAR_ASSIGN(Network palm, Network::read(folder / kPalmModel));
-  DUBSAR_ASSIGN(Network hand, Network::read(folder / kHandModel));
-  if (palm.rows() != kPalmInput || palm.columns() != kPalmInput || palm.channels() != 3 || hand.rows() != kHandInput ||
-      hand.columns() != kHandInput || hand.channels() != 3)
-    return fail(ErrorKind::kBadData, "{}: networks for {} and {} pixels, expected 192 and 224", folder.string(),
-                palm.rows(), hand.rows());
+  DUBSAR_ASSIGN(Network palm, Network::read(folder, kPalmModel));
+  DUBSAR_ASSIGN(Network hand, Network::read(folder, kHandModel));
   return std::make_unique<Networks>(std::move(palm), std::move(hand));
 }
 

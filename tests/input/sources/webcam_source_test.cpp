@@ -61,7 +61,7 @@ class WebcamOfAPhotograph : public testing::Test {
 };
 
 TEST_F(WebcamOfAPhotograph, AHeadMovesInTheScreenFrameAsItDoesInThePictures) {
-  if (!std::filesystem::exists(model_folder() / kFaceModel)) GTEST_SKIP() << kNoModels;
+  if (!std::filesystem::exists(model_folder() / kFaceModel.name)) GTEST_SKIP() << kNoModels;
   write("1.png", 58.2, 0.0);   // 600 mm away, on the camera's axis
   write("2.png", 58.2, 90.0);  // further to the picture's right: the person's left, -X
   write("3.png", 43.6, 0.0);   // 800 mm
@@ -102,7 +102,7 @@ TEST_F(WebcamOfAPhotograph, WithoutTheNetworkTheCascadeSeesTheHeadAndSaysSo) {
 }
 
 TEST_F(WebcamOfAPhotograph, HandsAreFollowedWhenAskedForAndNeedTheirNetworks) {
-  if (!std::filesystem::exists(model_folder() / kHandModel)) GTEST_SKIP() << kNoModels;
+  if (!std::filesystem::exists(model_folder() / kHandModel.name)) GTEST_SKIP() << kNoModels;
   std::filesystem::copy_file(photograph_folder() / "sample2.jpg", folder_ / "1.jpg");
   std::filesystem::copy_file(photograph_folder() / "sample2.jpg", folder_ / "2.jpg");
   const std::string spec = fmt::format("webcam:hands,fps=10,replay={}", folder_.string());
@@ -123,7 +123,7 @@ TEST_F(WebcamOfAPhotograph, HandsAreFollowedWhenAskedForAndNeedTheirNetworks) {
 }
 
 TEST(WebcamSourceOver, ALostCameraIsAStateAndComesBack) {
-  if (!std::filesystem::exists(model_folder() / kFaceModel)) GTEST_SKIP() << kNoModels;
+  if (!std::filesystem::exists(model_folder() / kFaceModel.name)) GTEST_SKIP() << kNoModels;
   struct Played final : FrameSource {
     const Clock& clock;
     bool* there;

@@ -27,9 +27,9 @@ PictureView view_of(const Image& image) { return {image.pixels.data(), image.wid
 class FacePhotographs : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(model_folder() / kFaceModel)) GTEST_SKIP() << kNoModels;
+    if (!std::filesystem::exists(model_folder() / kFaceModel.name)) GTEST_SKIP() << kNoModels;
     if (!std::filesystem::exists(photograph_folder() / "sample1.jpg")) GTEST_SKIP() << kNoPhotographs;
-    auto made = make_network_face_detector(model_folder() / kFaceModel);
+    auto made = make_network_face_detector(model_folder());
     ASSERT_TRUE(made) << made.error().message;
     detector_ = *std::move(made);
     std::normal_distribution<float> normal;
@@ -156,7 +156,7 @@ TEST_F(FacePhotographs, AtSixtyCentimetresTheFilteredDepthIsStillWithinTenMillim
       for (auto& planes : scenes)
         planes = scene(photo, 0.5 * (pupils.left + pupils.right) + glm::dvec2(shift(random_), shift(random_)) / scale,
                        scale);
-      auto detector = make_network_face_detector(model_folder() / kFaceModel);
+      auto detector = make_network_face_detector(model_folder());
       ASSERT_TRUE(detector);
       FaceTracker tracker(*std::move(detector), options);
       HeadFollower follower;
@@ -206,7 +206,7 @@ TEST_F(FacePhotographs, AFrameTakesAtMostTenMillisecondsOfOneCore) {
   double p99 = 0.0, bound = 0.0;
   // other programs on this machine only ever add: up to six rounds until one is undisturbed
   for (int round = 0; round < 6 && (round == 0 || p99 > bound); ++round) {
-    auto detector = make_network_face_detector(model_folder() / kFaceModel);
+    auto detector = make_network_face_detector(model_folder());
     ASSERT_TRUE(detector);
     FaceTracker tracker(*std::move(detector), {});
     std::vector<double> cost;

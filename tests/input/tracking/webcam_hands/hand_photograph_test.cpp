@@ -28,8 +28,8 @@ constexpr std::array<KnownHand, 3> kKnown{{{"sample5.jpg", {1374, 1146}, {1189, 
 class HandPhotographs : public testing::Test {
  protected:
   void SetUp() override {
-    for (const auto model : {kPalmModel, kHandModel})
-      if (!std::filesystem::exists(model_folder() / model)) GTEST_SKIP() << kNoModels;
+    for (const ModelFile& model : {kPalmModel, kHandModel})
+      if (!std::filesystem::exists(model_folder() / model.name)) GTEST_SKIP() << kNoModels;
     if (!std::filesystem::exists(photograph_folder() / "sample6.jpg")) GTEST_SKIP() << kNoPhotographs;
     auto made = make_hand_networks(model_folder());
     ASSERT_TRUE(made) << made.error().message;
