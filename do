@@ -11,6 +11,7 @@ packages=(
   libfmt-dev libexpected-dev libglm-dev nlohmann-json3-dev libcli11-dev libhwy-dev
   libmeshoptimizer-dev libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev libjpeg-dev zlib1g-dev libdeflate-dev
   libembree-dev libglfw3-dev libxcb1-dev libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenxr-dev libopenxr-loader1
+  libvulkan-dev mesa-vulkan-drivers
   libimgui-dev libfribidi-dev fonts-dejavu-core
   libhidapi-dev libusb-1.0-0-dev
   libopencv-core-dev libopencv-dnn-dev libopencv-objdetect-dev libopencv-videoio-dev opencv-data

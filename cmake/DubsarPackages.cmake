@@ -29,6 +29,7 @@ if(DUBSAR_APP)
   pkg_check_modules(openxr IMPORTED_TARGET openxr)  # head-mounted displays; without it they say so
   if(openxr_FOUND)
     pkg_check_modules(x11 REQUIRED IMPORTED_TARGET x11)
+    pkg_check_modules(vulkan REQUIRED IMPORTED_TARGET vulkan)  # its headers: the library is opened when a runtime asks for it
   endif()
   pkg_check_modules(hidapi REQUIRED IMPORTED_TARGET hidapi-hidraw)
   pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)

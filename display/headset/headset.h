@@ -60,6 +60,14 @@ struct WearerFrame {
 /// How pictures lie over the room that a see-through headset shows.
 enum class SeeThrough { kNo, kAlpha, kAdditive };
 
+/// Through what pictures reach the runtime: OpenGL, and Vulkan where it takes none; or one of them.
+enum class SessionGraphics { kAny, kGl, kVulkan };
+
+struct HeadsetWish {
+  SeeThrough see_through = SeeThrough::kNo;
+  SessionGraphics graphics = SessionGraphics::kAny;
+};
+
 /// Calls from the thread of one GL context, which is current and outlives it.
 class Headset {
  public:
@@ -84,7 +92,7 @@ class Headset {
 
 /// The headset that this machine's OpenXR runtime has, or will have. Nothing is opened before begin(): a runtime that
 /// is started later is found then. kUnavailable: no loader in this build.
-Result<std::unique_ptr<Headset>> make_headset(SeeThrough wish = SeeThrough::kNo);
+Result<std::unique_ptr<Headset>> make_headset(const HeadsetWish& wish = {});
 
 /// One sentence for `dubsar doctor`: the runtime and what it can, or why there is none. Loads other people's code: ask
 /// in a process of its own.

@@ -7,7 +7,11 @@
 
 #include <ctime>
 
+#define VK_NO_PROTOTYPES
+#include <vulkan/vulkan_core.h>
+
 #define XR_USE_GRAPHICS_API_OPENGL
+#define XR_USE_GRAPHICS_API_VULKAN
 #define XR_USE_PLATFORM_XLIB
 #define XR_USE_PLATFORM_EGL
 #define XR_USE_TIMESPEC

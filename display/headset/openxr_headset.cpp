@@ -13,7 +13,7 @@ constexpr TimestampNs kAfterExitNs = 10'000'000'000;  // whoever chose to end do
 
 class OpenXrHeadset final : public Headset {
  public:
-  explicit OpenXrHeadset(SeeThrough wish) : wish_(wish) {}
+  explicit OpenXrHeadset(const HeadsetWish& wish) : wish_(wish) {}
 
   PixelSize eye_size() const override { return size_; }
   std::string reason() const override { return reason_; }
@@ -52,14 +52,14 @@ class OpenXrHeadset final : public Headset {
     ended_ = false;
     door_.bind_context();
     if (!instance_) {
-      auto instance = Instance::open(door_, wish_);
+      auto instance = Instance::open(door_, wish_.see_through);
       if (!instance) return tell(instance.error().message), false;
       instance_ = *std::move(instance);
       device_ = instance_->device();
       const XrViewConfigurationView& eye = instance_->eyes()[0];
       size_ = {static_cast<int>(eye.recommendedImageRectWidth), static_cast<int>(eye.recommendedImageRectHeight)};
     }
-    auto session = Session::create(*instance_);
+    auto session = Session::create(*instance_, wish_.graphics);
     if (!session) {
       tell(session.error().message);
       instance_.reset();  // the runtime may have gone with its headset
@@ -82,7 +82,7 @@ class OpenXrHeadset final : public Headset {
     told_ = reason_ = reason;
   }
 
-  const SeeThrough wish_;
+  const HeadsetWish wish_;
   Door door_;
   std::unique_ptr<Instance> instance_;
   std::unique_ptr<Session> session_;  // goes first
@@ -95,15 +95,20 @@ class OpenXrHeadset final : public Headset {
 }  // namespace
 }  // namespace openxr
 
-Result<std::unique_ptr<Headset>> make_headset(SeeThrough wish) { return std::make_unique<openxr::OpenXrHeadset>(wish); }
+Result<std::unique_ptr<Headset>> make_headset(const HeadsetWish& wish) {
+  return std::make_unique<openxr::OpenXrHeadset>(wish);
+}
 
 HeadsetFacts headset_facts() {
   openxr::Door door;
   const auto instance = openxr::Instance::open(door, SeeThrough::kNo);
   if (!instance) return {false, instance.error().message};
-  return {true, fmt::format("runtime {}, headset {}{}{}", (*instance)->runtime(), (*instance)->device(),
+  return {true, fmt::format("runtime {}, headset {}{}{}{}", (*instance)->runtime(), (*instance)->device(),
                             (*instance)->has_hands() ? ", hands" : ", no hands",
-                            (*instance)->has_egl() ? ", EGL and GLX" : ", GLX only")};
+                            !(*instance)->has_gl()   ? ", no OpenGL"
+                            : (*instance)->has_egl() ? ", EGL and GLX"
+                                                     : ", GLX only",
+                            (*instance)->has_vulkan() ? ", Vulkan" : "")};
 }
 
 }  // namespace dubsar

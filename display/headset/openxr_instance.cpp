@@ -94,7 +94,8 @@ Result<std::unique_ptr<Instance>> Instance::open(Door& door, SeeThrough wish) {
     if (has(name)) wanted.push_back(name);
     return has(name);
   };
-  const bool gl = want(XR_KHR_OPENGL_ENABLE_EXTENSION_NAME);
+  out->gl_ = want(XR_KHR_OPENGL_ENABLE_EXTENSION_NAME);
+  out->vulkan_ = want(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME);
   out->egl_ = want(XR_MNDX_EGL_ENABLE_EXTENSION_NAME);
   out->hands_ = want(XR_EXT_HAND_TRACKING_EXTENSION_NAME);
   out->hand_source_ = out->hands_ && want(XR_EXT_HAND_TRACKING_DATA_SOURCE_EXTENSION_NAME);
@@ -112,8 +113,9 @@ Result<std::unique_ptr<Instance>> Instance::open(Door& door, SeeThrough wish) {
     out->runtime_ =
         fmt::format("{} {}.{}.{}", properties.runtimeName, XR_VERSION_MAJOR(properties.runtimeVersion),
                     XR_VERSION_MINOR(properties.runtimeVersion), XR_VERSION_PATCH(properties.runtimeVersion));
-  if (!gl)
-    return fail(ErrorKind::kUnavailable, "openxr: runtime {} does not take OpenGL (XR_KHR_opengl_enable)",
+  if (!out->gl_ && !out->vulkan_)
+    return fail(ErrorKind::kUnavailable,
+                "openxr: runtime {} takes neither OpenGL (XR_KHR_opengl_enable) nor Vulkan (XR_KHR_vulkan_enable2)",
                 out->runtime_);
   DUBSAR_TRY(out->find_headset(wish));
   return out;

@@ -11,7 +11,8 @@ namespace dubsar::openxr {
 
 class Instance {
  public:
-  /// Through `door`, which outlives it. kUnavailable, with what to do: no runtime, none that takes OpenGL, no headset.
+  /// Through `door`, which outlives it. kUnavailable, with what to do: no runtime, none that takes OpenGL or Vulkan, no
+  /// headset.
   static Result<std::unique_ptr<Instance>> open(Door& door, SeeThrough wish);
   ~Instance();
   Instance(const Instance&) = delete;
@@ -20,6 +21,8 @@ class Instance {
   Door& door() const noexcept { return *door_; }
   XrInstance handle() const noexcept { return instance_; }
   XrSystemId system() const noexcept { return system_; }
+  bool has_gl() const noexcept { return gl_; }
+  bool has_vulkan() const noexcept { return vulkan_; }  ///< XR_KHR_vulkan_enable2
   bool has_egl() const noexcept { return egl_; }
   bool has_hands() const noexcept { return hands_; }
   bool tells_hand_source() const noexcept { return hand_source_; }  ///< seen hands from those a controller stands for
@@ -40,7 +43,7 @@ class Instance {
   Door* door_;
   XrInstance instance_ = XR_NULL_HANDLE;
   XrSystemId system_ = XR_NULL_SYSTEM_ID;
-  bool egl_ = false, hands_ = false, hand_source_ = false, time_ = false;
+  bool gl_ = false, vulkan_ = false, egl_ = false, hands_ = false, hand_source_ = false, time_ = false;
   std::string runtime_, device_;
   std::vector<XrViewConfigurationView> eyes_;
   std::uint32_t view_count_ = 0;

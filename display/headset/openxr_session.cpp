@@ -10,74 +10,34 @@ namespace {
 
 constexpr XrDuration kPatience = 50'000'000;  // for an image that the compositor still shows, a frame
 
-struct Binding {
-  XrGraphicsBindingEGLMNDX egl = made<XrGraphicsBindingEGLMNDX>(XR_TYPE_GRAPHICS_BINDING_EGL_MNDX);
-  XrGraphicsBindingOpenGLXlibKHR glx = made<XrGraphicsBindingOpenGLXlibKHR>(XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR);
-  const void* which = nullptr;
-};
-
-/// Of the context that is current now.
-Result<void> bind_current(const Instance& instance, Binding& out) {
-  if (const EGLContext context = eglGetCurrentContext(); context != EGL_NO_CONTEXT) {
-    if (!instance.has_egl())
-      return fail(ErrorKind::kUnavailable,
-                  "openxr: runtime {} takes no EGL contexts (XR_MNDX_egl_enable), expected a window on an X11 server",
-                  instance.runtime());
-    out.egl.getProcAddress = eglGetProcAddress;
-    out.egl.display = eglGetCurrentDisplay();
-    out.egl.context = context;
-    out.which = &out.egl;
-    return {};
-  }
-  const GLXContext context = glXGetCurrentContext();
-  Display* const display = context != nullptr ? glXGetCurrentDisplay() : nullptr;
-  if (display == nullptr)
-    return fail(ErrorKind::kUnavailable, "openxr: no OpenGL context of EGL or GLX is current, expected one");
-  int id = 0, screen = 0, count = 0;
-  glXQueryContext(display, context, GLX_FBCONFIG_ID, &id);
-  glXQueryContext(display, context, GLX_SCREEN, &screen);
-  const int wanted[] = {GLX_FBCONFIG_ID, id, 0};
-  GLXFBConfig* const configs = glXChooseFBConfig(display, screen, wanted, &count);
-  if (configs == nullptr || count < 1)
-    return fail(ErrorKind::kUnavailable, "openxr: the window's visual {} was not found again", id);
-  out.glx.xDisplay = display;
-  out.glx.glxFBConfig = configs[0];
-  int visual = 0;
-  glXGetFBConfigAttrib(display, configs[0], GLX_VISUAL_ID, &visual);
-  out.glx.visualid = static_cast<std::uint32_t>(visual);
-  out.glx.glxDrawable = glXGetCurrentDrawable();
-  out.glx.glxContext = context;
-  out.which = &out.glx;
-  XFree(configs);
-  return {};
-}
-
 }  // namespace
 
-Result<std::unique_ptr<Session>> Session::create(Instance& instance) {
+Result<std::unique_ptr<Session>> Session::create(Instance& instance, SessionGraphics wish) {
+  if (wish != SessionGraphics::kVulkan && instance.has_gl()) {
+    DUBSAR_ASSIGN(auto graphics, make_gl_graphics(instance));
+    auto session = begin_with(instance, std::move(graphics));
+    if (session || session.error().kind != ErrorKind::kUsage) return session;
+    if (wish == SessionGraphics::kGl || !instance.has_vulkan())
+      return fail(
+          ErrorKind::kUnavailable,
+          "openxr: runtime {} takes no OpenGL session though it lists XR_KHR_opengl_enable, expected one that does",
+          instance.runtime());
+  }
+  DUBSAR_ASSIGN(auto graphics, make_vulkan_graphics(instance));
+  return begin_with(instance, std::move(graphics));
+}
+
+/// kUsage: the runtime takes sessions of other graphics only.
+Result<std::unique_ptr<Session>> Session::begin_with(Instance& instance, std::unique_ptr<Graphics> graphics) {
   std::unique_ptr<Session> out(new Session(instance));
-  const XrInstance handle = instance.handle();
-  const auto requirements =
-      function_of<PFN_xrGetOpenGLGraphicsRequirementsKHR>(handle, "xrGetOpenGLGraphicsRequirementsKHR");
-  if (requirements == nullptr)
-    return fail(ErrorKind::kUnavailable, "openxr: runtime {} does not say which OpenGL it needs", instance.runtime());
-  auto range = made<XrGraphicsRequirementsOpenGLKHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR);
-  DUBSAR_TRY(check(instance.door()(requirements, handle, instance.system(), &range), "asking which OpenGL is needed"));
-  if (XR_MAKE_VERSION(4, 5, 0) < range.minApiVersionSupported)
-    return fail(ErrorKind::kUnavailable, "openxr: runtime {} needs OpenGL {}.{}, expected 4.5 or less",
-                instance.runtime(), XR_VERSION_MAJOR(range.minApiVersionSupported),
-                XR_VERSION_MINOR(range.minApiVersionSupported));
-  Binding binding;
-  DUBSAR_TRY(bind_current(instance, binding));
+  out->graphics_ = std::move(graphics);
   auto info = made<XrSessionCreateInfo>(XR_TYPE_SESSION_CREATE_INFO);
-  info.next = binding.which;
+  info.next = out->graphics_->binding();
   info.systemId = instance.system();
-  const XrResult begun = instance.door()(xrCreateSession, handle, &info, &out->session_);
+  const XrResult begun = instance.door()(xrCreateSession, instance.handle(), &info, &out->session_);
   if (begun == XR_ERROR_GRAPHICS_DEVICE_INVALID)
-    return fail(ErrorKind::kUnavailable,
-                "openxr: runtime {} takes no OpenGL session though it lists XR_KHR_opengl_enable, expected one that "
-                "does; panels of DisplayXR take Vulkan only",
-                instance.runtime());
+    return fail(ErrorKind::kUsage, "openxr: runtime {} takes no {} session", instance.runtime(),
+                out->graphics_->name());
   DUBSAR_TRY(check(begun, "beginning a session"));
   DUBSAR_TRY(out->make_spaces());
   DUBSAR_ASSIGN(out->hands_, HandInput::create(instance, out->session_));
@@ -110,14 +70,14 @@ Result<void> Session::make_chains() {
   DUBSAR_TRY(check(door()(xrEnumerateSwapchainFormats, session_, 0, &count, nullptr), "asking for formats"));
   std::vector<std::int64_t> formats(count);
   DUBSAR_TRY(check(door()(xrEnumerateSwapchainFormats, session_, count, &count, formats.data()), "asking for formats"));
-  if (std::find(formats.begin(), formats.end(), GL_SRGB8_ALPHA8) == formats.end())
-    return fail(ErrorKind::kUnavailable, "openxr: runtime {} has no pictures of format GL_SRGB8_ALPHA8 among its {}",
-                instance_->runtime(), count);
+  if (std::find(formats.begin(), formats.end(), graphics_->format()) == formats.end())
+    return fail(ErrorKind::kUnavailable, "openxr: runtime {} has no pictures of format {} among its {}",
+                instance_->runtime(), graphics_->format_name(), count);
   for (std::size_t eye = 0; eye < 2; ++eye) {
     const XrViewConfigurationView& size = instance_->eyes()[eye];
     auto info = made<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
     info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
-    info.format = GL_SRGB8_ALPHA8;
+    info.format = graphics_->format();
     info.sampleCount = 1;
     info.width = size.recommendedImageRectWidth;
     info.height = size.recommendedImageRectHeight;
@@ -126,11 +86,7 @@ Result<void> Session::make_chains() {
     DUBSAR_TRY(check(door()(xrCreateSwapchain, session_, &info, &chain.handle), "making pictures"));
     chain.width = static_cast<int>(info.width);
     chain.height = static_cast<int>(info.height);
-    DUBSAR_TRY(check(door()(xrEnumerateSwapchainImages, chain.handle, 0, &count, nullptr), "asking for pictures"));
-    chain.images.assign(count, made<XrSwapchainImageOpenGLKHR>(XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR));
-    DUBSAR_TRY(check(door()(xrEnumerateSwapchainImages, chain.handle, count, &count,
-                            reinterpret_cast<XrSwapchainImageBaseHeader*>(chain.images.data())),
-                     "asking for pictures"));
+    DUBSAR_TRY(graphics_->take(eye, chain.handle, {chain.width, chain.height}));
   }
   return {};
 }
@@ -237,12 +193,9 @@ Result<bool> Session::copy_eye(const ViewArray& views, std::size_t eye) {
   if (ready == XR_TIMEOUT_EXPIRED) return false;
   DUBSAR_TRY(check(ready, "waiting for a picture"));
   const std::uint32_t index = *std::exchange(chain.acquired, std::nullopt);
-  // Both are sRGB-coded bytes: copied as they are.
-  if (index < chain.images.size())
-    glCopyImageSubData(views.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, static_cast<GLint>(eye), chain.images[index].image,
-                       GL_TEXTURE_2D, 0, 0, 0, 0, std::min(views.width(), chain.width),
-                       std::min(views.height(), chain.height), 1);
+  const Result<void> copied = graphics_->copy(views, eye, index);
   DUBSAR_TRY(check(door()(xrReleaseSwapchainImage, chain.handle, nullptr), "giving a picture back"));
+  DUBSAR_TRY(copied);
   return true;
 }
 

@@ -4,14 +4,16 @@
 #include <array>
 #include <vector>
 
+#include "display/headset/openxr_graphics.h"
 #include "display/headset/openxr_hands.h"
 
 namespace dubsar::openxr {
 
 class Session {
  public:
-  /// Binds the GL context that is current: one of EGL (XR_MNDX_egl_enable) or of GLX. kUnavailable with the reason.
-  static Result<std::unique_ptr<Session>> create(Instance& instance);
+  /// With the GL context that is current, or with Vulkan where the runtime takes no OpenGL. kUnavailable with the
+  /// reason.
+  static Result<std::unique_ptr<Session>> create(Instance& instance, SessionGraphics wish);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -29,11 +31,11 @@ class Session {
  private:
   struct Chain {
     XrSwapchain handle = XR_NULL_HANDLE;
-    std::vector<XrSwapchainImageOpenGLKHR> images;
     int width = 0, height = 0;
     std::optional<std::uint32_t> acquired;  // an image that the compositor has not let go yet
   };
   explicit Session(Instance& instance) : instance_(&instance) {}
+  static Result<std::unique_ptr<Session>> begin_with(Instance& instance, std::unique_ptr<Graphics> graphics);
   Result<void> make_spaces();
   Result<void> make_chains();
   Result<void> start_running();
@@ -46,6 +48,7 @@ class Session {
   std::optional<double> floor_at(XrTime time) const;
 
   Instance* instance_;
+  std::unique_ptr<Graphics> graphics_;  // outlives the session
   XrSession session_ = XR_NULL_HANDLE;
   XrSpace local_ = XR_NULL_HANDLE, stage_ = XR_NULL_HANDLE;
   std::array<Chain, 2> chains_;

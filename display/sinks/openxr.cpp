@@ -154,14 +154,21 @@ Result<std::unique_ptr<OutputSink>> make_openxr_sink(SinkOptions options) {
   HeadsetPlace place;
   place.distance_m = options.number("distance", 0.2, 5.0, place.distance_m);
   place.height_m = options.number("height", 0.0, 3.0, place.height_m);
+  HeadsetWish wish;
   const std::string blend = options.text("blend").value_or("opaque");
-  const SeeThrough wish = blend == "alpha"      ? SeeThrough::kAlpha
-                          : blend == "additive" ? SeeThrough::kAdditive
-                                                : SeeThrough::kNo;
-  if (wish == SeeThrough::kNo && blend != "opaque")
+  wish.see_through = blend == "alpha"      ? SeeThrough::kAlpha
+                     : blend == "additive" ? SeeThrough::kAdditive
+                                           : SeeThrough::kNo;
+  if (wish.see_through == SeeThrough::kNo && blend != "opaque")
     return fail(ErrorKind::kUsage, "display openxr: blend={} found, expected opaque, alpha or additive", blend);
-  DUBSAR_TRY(options.finish("distance=, height=, blend=opaque|alpha|additive"));
-  place.see_through = wish != SeeThrough::kNo;
+  const std::string graphics = options.text("graphics").value_or("any");
+  wish.graphics = graphics == "gl"       ? SessionGraphics::kGl
+                  : graphics == "vulkan" ? SessionGraphics::kVulkan
+                                         : SessionGraphics::kAny;
+  if (wish.graphics == SessionGraphics::kAny && graphics != "any")
+    return fail(ErrorKind::kUsage, "display openxr: graphics={} found, expected gl, vulkan or any", graphics);
+  DUBSAR_TRY(options.finish("distance=, height=, blend=opaque|alpha|additive, graphics=gl|vulkan|any"));
+  place.see_through = wish.see_through != SeeThrough::kNo;
   DUBSAR_ASSIGN(auto headset, make_headset(wish));
   return openxr_sink(std::move(headset), place);
 }

@@ -27,8 +27,9 @@ WearerFrame moved_to_screen(const WearerFrame& room, const Pose& room_from_scree
 /// The camera of an eye, whose frame is the screen's: millimetres, near and far planes of 30 mm and 20 m.
 View eye_view(const HeadsetEye& eye);
 
-/// Options: distance= (m), height= (m over the floor), blend=opaque|alpha|additive (see-through headsets). Waits for a
-/// runtime and a headset that are not there yet. kUnavailable: a build without OpenXR.
+/// Options: distance= (m), height= (m over the floor), blend=opaque|alpha|additive (see-through headsets),
+/// graphics=gl|vulkan|any (default: OpenGL, and Vulkan where the runtime takes none). Waits for a runtime and a headset
+/// that are not there yet. kUnavailable: a build without OpenXR.
 Result<std::unique_ptr<OutputSink>> make_openxr_sink(SinkOptions options);
 
 /// The same with a headset of one's own.

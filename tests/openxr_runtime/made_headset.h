@@ -57,6 +57,7 @@ struct MadeLacks {
   bool newer_api = false;               ///< no instance for an application of more than 1.0
   bool gl = false, gl_session = false;  ///< does not list OpenGL; lists it and begins no session of it
   bool egl = false, hands = false, time = false;
+  bool vulkan = false;
 };
 
 /// What runtimes do that nobody would expect of a library; seen at real ones or told of them in their trackers.
@@ -110,7 +111,7 @@ struct MadeFacts {
   std::vector<MadeFrame> frames;
   MadeHandles alive;
   int sessions_ever = 0, instances_ever = 0, wrong_calls = 0;
-  const char* binding = "";  ///< "EGL", "GLX"
+  const char* binding = "";  ///< "EGL", "GLX", "Vulkan"
   double now_s = 0.0;        ///< of the last xrWaitFrame: its display time
 };
 

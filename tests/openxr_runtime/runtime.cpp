@@ -58,7 +58,8 @@ namespace {
 
 std::vector<const char*> extensions() {
   const MadeManners& manners = state().headset.manners;
-  std::vector<const char*> out{"XR_KHR_vulkan_enable2"};
+  std::vector<const char*> out;
+  if (!manners.lacks.vulkan) out.push_back(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME);
   if (!manners.lacks.gl) out.push_back(XR_KHR_OPENGL_ENABLE_EXTENSION_NAME);
   if (!manners.lacks.egl) out.push_back(XR_MNDX_EGL_ENABLE_EXTENSION_NAME);
   if (!manners.lacks.hands) out.push_back(XR_EXT_HAND_TRACKING_EXTENSION_NAME);
@@ -194,8 +195,14 @@ XrResult XRAPI_CALL create_session(XrInstance, const XrSessionCreateInfo* info, 
   if (s.session != 0) return XR_ERROR_LIMIT_REACHED;
   if (session_lost()) return XR_ERROR_RUNTIME_FAILURE;
   const auto* const binding = static_cast<const XrBaseInStructure*>(info->next);
-  if (binding == nullptr || s.headset.manners.lacks.gl_session) return XR_ERROR_GRAPHICS_DEVICE_INVALID;
-  if (binding->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX) {
+  if (binding == nullptr) return XR_ERROR_GRAPHICS_DEVICE_INVALID;
+  s.vulkan = binding->type == XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR;
+  if (s.headset.manners.lacks.gl_session && !s.vulkan) return XR_ERROR_GRAPHICS_DEVICE_INVALID;
+  if (s.vulkan) {
+    const XrResult bound = bind_vulkan(*reinterpret_cast<const XrGraphicsBindingVulkan2KHR*>(binding));
+    if (bound != XR_SUCCESS) return bound;
+    s.headset.binding = "Vulkan";
+  } else if (binding->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX) {
     const auto& egl = *reinterpret_cast<const XrGraphicsBindingEGLMNDX*>(binding);
     if (egl.context == nullptr || egl.display == nullptr || egl.getProcAddress == nullptr)
       return XR_ERROR_GRAPHICS_DEVICE_INVALID;
@@ -221,6 +228,8 @@ XrResult XRAPI_CALL destroy_session(XrSession) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
   --s.headset.alive.sessions;
+  if (s.vulkan) unbind_vulkan();
+  s.vulkan = false;
   s.session = 0;
   s.running = false;
   s.events.news.clear();
@@ -374,6 +383,7 @@ XrResult XRAPI_CALL get_proc(XrInstance, const char* name, PFN_xrVoidFunction* o
   const auto found = functions.find(name);
   *out = found != functions.end() ? found->second : frame_function(name);
   if (*out == nullptr) *out = input_function(name);
+  if (*out == nullptr) *out = vulkan_function(name);
   return *out != nullptr ? XR_SUCCESS : XR_ERROR_FUNCTION_UNSUPPORTED;
 }
 }  // namespace

@@ -18,7 +18,9 @@ XrResult wrong() {
 }
 
 XrResult XRAPI_CALL swapchain_formats(XrSession, std::uint32_t capacity, std::uint32_t* count, std::int64_t* out) {
-  const std::vector<std::int64_t>& formats = state().headset.manners.formats;
+  const std::vector<std::int64_t> formats =
+      state().vulkan ? std::vector<std::int64_t>{VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_SRGB}
+                     : state().headset.manners.formats;
   *count = static_cast<std::uint32_t>(formats.size());
   if (capacity >= formats.size()) std::copy(formats.begin(), formats.end(), out);
   return XR_SUCCESS;
@@ -29,9 +31,12 @@ XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* inf
   MadeSwapchain chain;
   chain.width = static_cast<int>(info->width);
   chain.height = static_cast<int>(info->height);
-  for (unsigned& texture : chain.textures) {
-    glCreateTextures(GL_TEXTURE_2D, 1, &texture);
-    glTextureStorage2D(texture, 1, static_cast<GLenum>(info->format), chain.width, chain.height);
+  if (s.vulkan) {
+    if (const XrResult made = make_vulkan_images(chain, info->format); made != XR_SUCCESS) return made;
+  } else {
+    glCreateTextures(GL_TEXTURE_2D, 3, chain.textures.data());
+    for (const unsigned texture : chain.textures)
+      glTextureStorage2D(texture, 1, static_cast<GLenum>(info->format), chain.width, chain.height);
   }
   s.swapchains[s.next_handle] = chain;
   ++s.headset.alive.swapchains;
@@ -42,7 +47,10 @@ XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* inf
 XrResult XRAPI_CALL destroy_swapchain(XrSwapchain swapchain) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
-  glDeleteTextures(3, s.swapchains[id_of(swapchain)].textures.data());
+  if (s.vulkan)
+    destroy_vulkan_images(s.swapchains[id_of(swapchain)]);
+  else
+    glDeleteTextures(3, s.swapchains[id_of(swapchain)].textures.data());
   s.headset.alive.swapchains -= static_cast<int>(s.swapchains.erase(id_of(swapchain)));
   return XR_SUCCESS;
 }
@@ -51,7 +59,10 @@ XrResult XRAPI_CALL swapchain_images(XrSwapchain swapchain, std::uint32_t capaci
   const MadeSwapchain& chain = state().swapchains[id_of(swapchain)];
   *count = static_cast<std::uint32_t>(chain.textures.size());
   for (std::size_t i = 0; capacity >= chain.textures.size() && i < chain.textures.size(); ++i)
-    reinterpret_cast<XrSwapchainImageOpenGLKHR*>(out)[i].image = chain.textures[i];
+    if (state().vulkan)
+      reinterpret_cast<XrSwapchainImageVulkan2KHR*>(out)[i].image = chain.images[i];
+    else
+      reinterpret_cast<XrSwapchainImageOpenGLKHR*>(out)[i].image = chain.textures[i];
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL acquire_image(XrSwapchain swapchain, const XrSwapchainImageAcquireInfo*, std::uint32_t* index) {
@@ -94,8 +105,11 @@ XrResult XRAPI_CALL release_image(XrSwapchain swapchain, const XrSwapchainImageR
 /// The picture's red, and mean place of pixels that are lighter than half, from the lower left.
 void look_at(const MadeSwapchain& chain, std::vector<std::uint8_t>& red, std::optional<glm::dvec2>& bright) {
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(chain.width) * chain.height * 4);
-  glGetTextureImage(chain.textures[static_cast<std::size_t>(chain.shown)], 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                    static_cast<GLsizei>(pixels.size()), pixels.data());
+  if (state().vulkan)
+    pixels = read_vulkan_image(chain);
+  else
+    glGetTextureImage(chain.textures[static_cast<std::size_t>(chain.shown)], 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                      static_cast<GLsizei>(pixels.size()), pixels.data());
   glm::dvec2 sum(0.0);
   int count = 0;
   red.reserve(pixels.size() / 4);

@@ -4,10 +4,12 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <epoxy/glx.h>
+#include <vulkan/vulkan_core.h>
 
 #include <ctime>
 
 #define XR_USE_GRAPHICS_API_OPENGL
+#define XR_USE_GRAPHICS_API_VULKAN
 #define XR_USE_PLATFORM_XLIB
 #define XR_USE_PLATFORM_EGL
 #define XR_USE_TIMESPEC
@@ -29,7 +31,9 @@ struct MadeSpace {
   int side = 0;
 };
 struct MadeSwapchain {
-  std::array<unsigned, 3> textures{};
+  std::array<unsigned, 3> textures{};  // of sessions of OpenGL
+  std::array<VkImage, 3> images{};     // of sessions of Vulkan
+  std::array<VkDeviceMemory, 3> memory{};
   int width = 0, height = 0, next = 0, shown = -1;
   bool acquired = false, waited = false;
 };
@@ -65,6 +69,7 @@ struct RuntimeState {
   bool only_seen_hands = false;  // what the hand trackers were made for
   bool running = false;
   FrameState frame;
+  bool vulkan = false;  // the session's pictures are Vulkan's
 };
 
 RuntimeState& state();
@@ -91,6 +96,15 @@ MadePose in_space(const MadePose& local_from_thing, const MadeSpace& base, doubl
 MadePose place_of(const MadeSpace& space, double time_s);
 /// The session is lost from the moment that a test wants it to be.
 bool session_lost();
+
+// Sessions of Vulkan, with the device of the application (runtime_vulkan.cpp).
+XrResult bind_vulkan(const XrGraphicsBindingVulkan2KHR& binding);
+void unbind_vulkan();
+XrResult make_vulkan_images(MadeSwapchain& chain, std::int64_t format);
+void destroy_vulkan_images(MadeSwapchain& chain);
+/// RGBA of the picture that is shown, rows from below.
+std::vector<std::uint8_t> read_vulkan_image(const MadeSwapchain& chain);
+PFN_xrVoidFunction vulkan_function(const std::string& name);
 
 /// Hands and actions by their names, for xrGetInstanceProcAddr; null: not theirs.
 PFN_xrVoidFunction input_function(const std::string& name);

@@ -45,7 +45,7 @@ constexpr std::array<SinkBackend, 12> kSinks{{
      make_shutter_sink},
     {"openxr",
      "head-mounted displays through OpenXR, life size on a table before the wearer: distance=, height=, "
-     "blend=opaque|alpha|additive",
+     "blend=opaque|alpha|additive, graphics=gl|vulkan|any",
      make_openxr_sink, false},
     {"quilt",
      "all views of a Looking Glass panel as tiles: PROFILE or columns=,rows=,width=,height=,aspect=,cone=,"

@@ -200,7 +200,7 @@ TEST_F(OpenXr, WhatIsMissingIsSaidAndWaitedFor) {
   EXPECT_TRUE(picture());
   scene_.reset();
   sink_.reset();
-  EXPECT_EQ(headset_facts().words, "runtime Made Runtime 1.2.3, headset Made Headset, hands, EGL and GLX");
+  EXPECT_EQ(headset_facts().words, "runtime Made Runtime 1.2.3, headset Made Headset, hands, EGL and GLX, Vulkan");
   ::setenv("XR_RUNTIME_JSON", "/nonexistent/runtime.json", 1);
   open();
   EXPECT_FALSE(picture());

@@ -89,13 +89,13 @@ TEST_F(RudeRuntime, OneInstanceIsMadeForAWholeSession) {
 }
 
 TEST_F(RudeRuntime, WithoutOpenGlOrASessionOfItTheReasonIsSaid) {
-  made_->manners.lacks.gl = true;
+  made_->manners.lacks.vulkan = made_->manners.lacks.gl = true;
   open();
-  expect_reason("does not take OpenGL (XR_KHR_opengl_enable)");
+  expect_reason("takes neither OpenGL (XR_KHR_opengl_enable) nor Vulkan");
   scene_.reset();
   sink_.reset();
   made_->manners = MadeManners();
-  made_->manners.lacks.gl_session = true;
+  made_->manners.lacks.vulkan = made_->manners.lacks.gl_session = true;
   open();
   expect_reason("takes no OpenGL session though it lists");
 }
