@@ -47,6 +47,7 @@ struct PhantomOptions {
   double gap_vox = 0.0;           ///< between tablet and envelope elsewhere; 0: 0.3 mm, at least some voxels
   double wedge_depth_vox = 0.0;   ///< of a usual wedge; 0: 7 voxels, or more where 3.6 mm a line are more
   bool written = true;            ///< false: nobody wrote on the tablet
+  bool ruled = true;              ///< lines are ruled; nothing else changes
   double envelope_density = 1.0;  ///< of the envelope's clay, relative to the tablet's
   double rings = 0.0;             ///< standard deviation of ring artefacts, relative to clay
   double blur_vox = kUsualBlur;   ///< standard deviation of the point spread along each axis, 0.3 to 1.1

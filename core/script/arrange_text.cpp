@@ -1,6 +1,7 @@
 #include "core/script/arrange_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -17,24 +18,23 @@ constexpr double kKindOblique = 68.0;     // beyond is vertical, or upwards
 constexpr double kKindShort = 1.3;        // lengths over the width: a Winkelhaken is no longer
 constexpr double kKindBackwards = 140.0;  // degrees: against the line
 
-void number_lines(std::vector<ScriptWedge>& wedges, const TextSides& sides, TextSide side) {
-  std::vector<TextBody> bodies;
-  std::vector<std::size_t> which;
+void number_lines(std::vector<ScriptWedge>& wedges, const TextSides& sides) {
+  std::vector<std::vector<TextBody>> bodies(kTextSideCount);
   std::vector<double> widths;
-  const glm::dvec3 right = sides.right_of(side), up = sides.up_of(side);
-  for (std::size_t i = 0; i < wedges.size(); ++i) {
-    const ScriptWedge& w = wedges[i];
-    if (w.side != side) continue;
+  for (const ScriptWedge& w : wedges) {
+    const glm::dvec3 right = sides.right_of(w.side), up = sides.up_of(w.side);
     const double head = glm::dot(w.head_mm, up), tail = glm::dot(w.tail_mm, up);
-    const double half =
-        0.5 * w.width_mm * std::abs(glm::dot(w.corner_mm[0] - w.corner_mm[1], up)) / std::max(w.width_mm, 1e-9);
-    bodies.push_back(
+    const double half = 0.5 * std::abs(glm::dot(w.corner_mm[0] - w.corner_mm[1], up));
+    bodies[static_cast<std::size_t>(w.side)].push_back(
         {0.5 * glm::dot(w.head_mm + w.tail_mm, right), std::min(head - half, tail), std::max(head + half, tail)});
-    which.push_back(i);
     widths.push_back(w.width_mm);
   }
-  const std::vector<int> lines = lines_of(bodies, median(widths));
-  for (std::size_t k = 0; k < which.size(); ++k) wedges[which[k]].line = lines[k];
+  const std::vector<std::vector<int>> lines = lines_of(bodies, median(widths));
+  std::array<std::size_t, kTextSideCount> next{};
+  for (ScriptWedge& w : wedges) {
+    const auto side = static_cast<std::size_t>(w.side);
+    w.line = lines[side][next[side]++];
+  }
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ void arrange_text(std::vector<ScriptWedge>& wedges, const TextSides& sides) {
     w.side = angle.side;
     w.kind = wedge_kind(angle.angle, w.width_mm > 0.0 ? w.length_mm / w.width_mm : 0.0);
   }
-  for (std::size_t s = 0; s < kTextSideCount; ++s) number_lines(wedges, sides, static_cast<TextSide>(s));
+  number_lines(wedges, sides);
   std::stable_sort(wedges.begin(), wedges.end(), [&](const ScriptWedge& a, const ScriptWedge& b) {
     const auto key = [&](const ScriptWedge& w) {
       return std::tuple(w.side, w.column, w.line, glm::dot(w.head_mm, sides.right_of(w.side)),

@@ -120,10 +120,6 @@ std::int64_t PatchCells::cell_of(int axis, double at) const {
                                   cells_[static_cast<std::size_t>(axis)] - 1);
 }
 
-std::size_t PatchCells::index(std::int64_t x, std::int64_t y, std::int64_t z) const {
-  return static_cast<std::size_t>((z * cells_[1] + y) * cells_[0] + x);
-}
-
 std::vector<PatchCells::Tile> PatchCells::tiles(double tile_mm) const {
   struct Sum {
     glm::dvec3 place{0.0}, normal{0.0};

@@ -38,21 +38,22 @@ class PatchCells {
       to[static_cast<std::size_t>(a)] = cell_of(a, middle[a] + reach);
     }
     for (std::int64_t z = from[2]; z <= to[2]; ++z)
-      for (std::int64_t y = from[1]; y <= to[1]; ++y)
-        for (std::int64_t x = from[0]; x <= to[0]; ++x) {
-          const std::size_t cell = index(x, y, z);
-          for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1]; ++i) {
-            const Triangle& t = triangles_[i];
-            visit(points_[t[0]], points_[t[1]], points_[t[2]], t);
-          }
+      for (std::int64_t y = from[1]; y <= to[1]; ++y) {  // cells of a row lie beside each other
+        const std::uint32_t end = starts_[index(to[0], y, z) + 1];
+        for (std::uint32_t i = starts_[index(from[0], y, z)]; i < end; ++i) {
+          const Triangle& t = triangles_[i];
+          visit(points_[t[0]], points_[t[1]], points_[t[2]], t);
         }
+      }
   }
   /// How certain a vertex is (evidence.h).
   std::uint8_t evidence(std::uint32_t vertex) const { return evidence_.empty() ? 0 : evidence_[vertex]; }
 
  private:
   std::int64_t cell_of(int axis, double at) const;
-  std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const;
+  std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return static_cast<std::size_t>((z * cells_[1] + y) * cells_[0] + x);
+  }
 
   double cell_mm_ = 1.0, area_ = 0.0, edge_ = 0.0;
   glm::dvec3 low_{0.0}, high_{0.0};

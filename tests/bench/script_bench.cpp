@@ -21,7 +21,8 @@ namespace dubsar {
 namespace {
 
 constexpr std::string_view kHelp =
-    "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--envelope] [--keep DIR]\n"
+    "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--unruled] [--envelope] "
+    "[--keep DIR]\n"
     "             [--each] [--subdivide TIMES]\n"
     "  --depth     of a usual wedge (7)\n"
     "  --envelope  judges the envelope's outside instead of the tablet\n"
@@ -34,7 +35,7 @@ struct ScriptArguments {
   std::uint64_t seed = 1;
   int seeds = 1, subdivide = 0;
   double depth = 7.0;
-  bool unwritten = false, envelope = false, each = false;
+  bool unwritten = false, unruled = false, envelope = false, each = false;
   std::string keep;
 };
 
@@ -49,6 +50,8 @@ ScriptArguments parse_script(int argc, char** argv) {
     const std::string_view word = argv[i];
     if (word == "--unwritten") {
       a.unwritten = true;
+    } else if (word == "--unruled") {
+      a.unruled = true;
     } else if (word == "--envelope") {
       a.envelope = true;
     } else if (word == "--each") {
@@ -86,8 +89,9 @@ T script_value(Result<T> result) {
 SurfaceModel surface_of(const phantom::PhantomOptions& options, const std::string& keep, Progress& progress) {
   namespace fs = std::filesystem;
   const fs::path kept =
-      fs::path(keep) / fmt::format("s{}_{}x{}x{}_d{:g}{}.exa", options.seed, options.dims.x, options.dims.y,
-                                   options.dims.z, options.wedge_depth_vox, options.written ? "" : "_unwritten");
+      fs::path(keep) / fmt::format("s{}_{}x{}x{}_d{:g}{}{}.exa", options.seed, options.dims.x, options.dims.y,
+                                   options.dims.z, options.wedge_depth_vox, options.written ? "" : "_unwritten",
+                                   options.ruled ? "" : "_unruled");
   if (!keep.empty() && fs::exists(kept)) return script_value(read_exa(kept, progress));
   const fs::path scan = fs::temp_directory_path() / fmt::format("dubsar_script_{}.h5", ::getpid());
   script_value(phantom::write_phantom(scan, std::nullopt, options, progress));
@@ -165,6 +169,7 @@ int run_script(int argc, char** argv) {
     options.seed = a.seed + static_cast<std::uint64_t>(k);
     options.wedge_depth_vox = a.unwritten ? 0.0 : a.depth;
     options.written = !a.unwritten;
+    options.ruled = !a.unruled;
     const auto truth = script_value(phantom::Phantom::create(options));
     const SurfaceModel model = surface_of(options, a.keep, progress);
     TriMesh mesh = a.envelope ? script_value(make_tri_mesh(

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <numbers>
+#include <set>
 
 namespace dubsar {
 namespace {
@@ -94,11 +95,19 @@ WedgeScore judge_wedges(const phantom::Phantom& truth, std::span<const ScriptWed
     ++lines[of][pressed];
     in_line.push_back({of[0], of[1], pressed});
   }
+  // A line that was found is one that was pressed, and no other is the same: those that share most wedges, first.
+  std::vector<std::array<int, 4>> shared;  // wedges, side, line, pressed
+  for (const auto& [found_line, pressed_lines] : lines)
+    for (const auto& [pressed, count] : pressed_lines) shared.push_back({count, found_line[0], found_line[1], pressed});
+  std::stable_sort(shared.begin(), shared.end(), [](const auto& a, const auto& b) { return a[0] > b[0]; });
+  std::map<std::array<int, 2>, int> is_line;
+  std::set<int> taken;
+  for (const auto& [count, side, line, pressed] : shared)
+    if (line % 100 > 0 && !is_line.contains({side, line}) && taken.insert(pressed).second)
+      is_line[{side, line}] = pressed;
   for (const auto& [side, line, pressed] : in_line) {
-    const auto& of = lines[{side, line}];
-    const auto most =
-        std::max_element(of.begin(), of.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    score.line_right += line % 100 > 0 && most->first == pressed;
+    const auto is = is_line.find({side, line});
+    score.line_right += is != is_line.end() && is->second == pressed;
   }
   return score;
 }

@@ -34,7 +34,8 @@ struct WedgeScore : WedgeCounts {
   int drawn = 0, real = 0;    ///< found wedges; of those, with the head and direction of any wedge of the phantom
   int placed = 0;             ///< of those drawn, with the head of one whatever its direction
   int kind_right = 0;         ///< of `found`
-  int line_right = 0;         ///< of `found` on sides with text: same line as most of its line
+  int line_right = 0;  ///< of `found`: in the line that was found for its own; each line that was found is one of
+                       ///< those pressed, no two the same
   std::vector<double> depth_ratios, direction_deg, head_off_vox;  ///< of `found`: measured over true, and errors
   std::vector<JudgedWedge> judged;                                ///< one for each found wedge
   std::vector<int> missed;  ///< wedges of the phantom that were wanted and not found
