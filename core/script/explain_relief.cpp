@@ -37,9 +37,10 @@ double level_at(const WedgeSite& site, double x, double y) {
 
 }  // namespace
 
-ReliefExplanation::ReliefExplanation(const PatchCells& cells, const WedgeScale& scale,
+ReliefExplanation::ReliefExplanation(SurfaceLevels& surface, const WedgeScale& scale,
                                      const std::vector<DeepPlace>& places)
-    : cells_(&cells), scale_(scale), sites_(places.size()), fits_(places.size()) {
+    : fine_(&surface.fine()), scale_(scale), sites_(places.size()), fits_(places.size()) {
+  const PatchCells& cells = surface.for_width(scale.width_mm);
   parallel_for(static_cast<std::int64_t>(places.size()), 4, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
     sites_[k] = wedge_site(cells, scale, places[k]);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/script/surface_levels.h"
 #include "core/script/wedge_sites.h"
 
 namespace dubsar {
@@ -30,8 +31,8 @@ struct PlacedImprint {
 
 class ReliefExplanation {
  public:
-  /// Fits each place alone, to begin with. `cells` must outlive it. Cost: some ms a place, all threads.
-  ReliefExplanation(const PatchCells& cells, const WedgeScale& scale, const std::vector<DeepPlace>& places);
+  /// Fits each place alone, to begin with. `surface` must outlive it. Cost: some ms a place, all threads.
+  ReliefExplanation(SurfaceLevels& surface, const WedgeScale& scale, const std::vector<DeepPlace>& places);
 
   /// Begins with what explains most, and goes on until nothing gains `cost` any more: each round fits all imprints
   /// anew beside the others, drops those that gain less, turns those that explain more otherwise, and takes in others.
@@ -42,7 +43,10 @@ class ReliefExplanation {
   using Surprise = std::function<double(const glm::dvec3& along, const glm::dvec3& normal, const Imprint& imprint)>;
   void prefer(Surprise surprise) { surprise_ = std::move(surprise); }
 
+  /// Depth, misfit and covered are left at what they are to begin with.
   std::vector<PlacedImprint> placed() const;
+  /// With them. Cost: a millisecond each.
+  std::vector<PlacedImprint> measured() const;
 
  private:
   struct Fit {
@@ -71,7 +75,7 @@ class ReliefExplanation {
 
   double doubt(const WedgeSite& site, const Imprint& imprint) const;
 
-  const PatchCells* cells_;
+  const PatchCells* fine_;
   WedgeScale scale_;
   Surprise surprise_;
   std::vector<WedgeSite> sites_;

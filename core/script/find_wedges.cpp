@@ -25,15 +25,16 @@ Result<WedgesFound> find_wedges(const TriMesh& mesh, const WedgeSearch& search, 
   if (mesh.triangles.empty())
     return fail(ErrorKind::kBadData, "wedges: a surface without triangles found, expected a tablet");
   progress.begin("wedges", 3, "step");
-  const PatchCells cells(mesh);
+  SurfaceLevels surface(mesh);
   WedgesFound out;
-  if (!cells.empty()) out.scale = wedge_scale(cells, search.width_mm);
+  if (!surface.fine().empty()) out.scale = wedge_scale(surface, search.width_mm);
   progress.advance(1);
   if (progress.cancelled()) return cancelled_error();
   if (out.scale.width_mm > 0.0) {
+    const PatchCells& cells = surface.for_width(out.scale.width_mm);
     const std::vector<DeepPlace> places = deep_places(cells, out.scale, kFindLeastDepth, 1);
     out.places = static_cast<std::int64_t>(places.size());
-    ReliefExplanation relief(cells, out.scale, places);
+    ReliefExplanation relief(surface, out.scale, places);
     progress.advance(1);
     if (progress.cancelled()) return cancelled_error();
     relief.explain(kFindRounds, kFindCost);
@@ -49,7 +50,7 @@ Result<WedgesFound> find_wedges(const TriMesh& mesh, const WedgeSearch& search, 
       relief.explain(1, kFindCost);
     }
     out.sides = sides;
-    const std::vector<PlacedImprint> placed = relief.placed();
+    const std::vector<PlacedImprint> placed = relief.measured();
     std::vector<double> misfits, widths;
     for (const PlacedImprint& one : placed) {
       misfits.push_back(one.misfit);

@@ -26,11 +26,11 @@ bool ReliefExplanation::deepest_vertex(const PlacedImprint& one, double& x, doub
     any = true;
     x = du, y = dv, height = h;
   };
-  cells_->visit(one.foot, 2.0 * kNear * scale_.width_mm + one.imprint.depth() * scale_.width_mm,
-                [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const Triangle&) {
-                  if (glm::dot(glm::dvec3(glm::cross(b - a, c - a)), site.out) < 0.0) return;  // of another sheet
-                  look(a), look(b), look(c);
-                });
+  fine_->visit(one.foot, 2.0 * kNear * scale_.width_mm + one.imprint.depth() * scale_.width_mm,
+               [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const Triangle&) {
+                 if (glm::dot(glm::dvec3(glm::cross(b - a, c - a)), site.out) < 0.0) return;  // of another sheet
+                 look(a), look(b), look(c);
+               });
   return any;
 }
 
@@ -107,6 +107,11 @@ std::vector<PlacedImprint> ReliefExplanation::placed() const {
   std::vector<PlacedImprint> out;
   for (std::size_t k = 0; k < sites_.size(); ++k)
     if (fits_[k].active) out.push_back(placed_at(k));
+  return out;
+}
+
+std::vector<PlacedImprint> ReliefExplanation::measured() const {
+  std::vector<PlacedImprint> out = placed();
   parallel_for(static_cast<std::int64_t>(out.size()), 4,
                [&](std::int64_t i) { measure(out[static_cast<std::size_t>(i)]); });
   return out;

@@ -67,7 +67,7 @@ void fill_triangle(TangentPatch& patch, const std::array<glm::vec3, 3>& p) {
 
 }  // namespace
 
-PatchCells::PatchCells(const TriMesh& mesh, double cell_mm) : cell_mm_(cell_mm), evidence_(mesh.evidence) {
+PatchCells::PatchCells(const TriMesh& mesh) {
   points_.resize(mesh.positions.size());
   parallel_for(static_cast<std::int64_t>(points_.size()), 1 << 15, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);
@@ -75,17 +75,26 @@ PatchCells::PatchCells(const TriMesh& mesh, double cell_mm) : cell_mm_(cell_mm),
   });
   const auto inferred = [&](std::size_t t) {
     if (!mesh.triangle_inferred.empty() && mesh.triangle_inferred[t]) return true;
-    return std::any_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
-                       [&](std::uint32_t v) { return evidence(v) == evidence_byte(Evidence::kInferred); });
+    return !mesh.evidence.empty() &&
+           std::any_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
+                       [&](std::uint32_t v) { return mesh.evidence[v] == evidence_byte(Evidence::kInferred); });
   };
-  std::vector<std::uint32_t> kept;
+  std::vector<Triangle> kept;
   kept.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (!inferred(t)) kept.push_back(mesh.triangles[t]);
+  sort_into_cells(kept);
+}
+
+PatchCells::PatchCells(std::vector<glm::vec3> points_mm, std::vector<Triangle> triangles)
+    : points_(std::move(points_mm)) {
+  sort_into_cells(triangles);
+}
+
+void PatchCells::sort_into_cells(const std::vector<Triangle>& kept) {
   low_ = glm::dvec3(std::numeric_limits<double>::max()), high_ = -low_;
   double edges = 0.0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (inferred(t)) continue;
-    kept.push_back(static_cast<std::uint32_t>(t));
-    const Triangle& f = mesh.triangles[t];
+  for (const Triangle& f : kept) {
     const glm::dvec3 a(points_[f[0]]), b(points_[f[1]]), c(points_[f[2]]);
     low_ = glm::min(low_, glm::min(a, glm::min(b, c)));
     high_ = glm::max(high_, glm::max(a, glm::max(b, c)));
@@ -95,24 +104,21 @@ PatchCells::PatchCells(const TriMesh& mesh, double cell_mm) : cell_mm_(cell_mm),
   if (kept.empty()) return;
   edge_ = edges / static_cast<double>(kept.size());
   const glm::dvec3 extent = high_ - low_;
-  if (!(cell_mm_ > 0.0)) {  // a two-hundredth of its size
-    const double longest = std::max({extent.x, extent.y, extent.z});
-    cell_mm_ = std::max(longest / 200.0, 1e-9);
-  }
+  cell_mm_ = std::max(std::max({extent.x, extent.y, extent.z}) / 200.0, 1e-9);
   while ((extent.x / cell_mm_ + 1) * (extent.y / cell_mm_ + 1) * (extent.z / cell_mm_ + 1) > kPatchMostCells)
     cell_mm_ *= 1.25;
   for (int a = 0; a < 3; ++a) cells_[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(extent[a] / cell_mm_) + 1;
   starts_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
   std::vector<std::uint32_t> cell(kept.size());
   for (std::size_t k = 0; k < kept.size(); ++k) {
-    const glm::dvec3 p(points_[mesh.triangles[kept[k]][0]]);
+    const glm::dvec3 p(points_[kept[k][0]]);
     cell[k] = static_cast<std::uint32_t>(index(cell_of(0, p.x), cell_of(1, p.y), cell_of(2, p.z)));
     ++starts_[cell[k] + 1];
   }
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
   triangles_.resize(kept.size());
-  for (std::size_t k = 0; k < kept.size(); ++k) triangles_[next[cell[k]]++] = mesh.triangles[kept[k]];
+  for (std::size_t k = 0; k < kept.size(); ++k) triangles_[next[cell[k]]++] = kept[k];
 }
 
 std::int64_t PatchCells::cell_of(int axis, double at) const {

@@ -14,8 +14,9 @@ namespace dubsar {
 /// Triangles of a mesh by cells of space, without those that are inferred. All lengths in mm.
 class PatchCells {
  public:
-  /// `cell_mm` 0: a two-hundredth of its longest extent. Keeps no reference. Cost: some 50 ns a triangle.
-  explicit PatchCells(const TriMesh& mesh, double cell_mm = 0.0);
+  /// Cells are a two-hundredth of its longest extent. Keeps no reference. Cost: some 50 ns a triangle.
+  explicit PatchCells(const TriMesh& mesh);
+  PatchCells(std::vector<glm::vec3> points_mm, std::vector<Triangle> triangles);
 
   struct Tile {
     glm::dvec3 middle{0.0}, normal{0, 0, 1};
@@ -46,10 +47,12 @@ class PatchCells {
         }
       }
   }
-  /// How certain a vertex is (evidence.h).
-  std::uint8_t evidence(std::uint32_t vertex) const { return evidence_.empty() ? 0 : evidence_[vertex]; }
+  glm::dvec3 low_mm() const noexcept { return low_; }
+  const std::vector<glm::vec3>& points() const noexcept { return points_; }
+  const std::vector<Triangle>& triangles() const noexcept { return triangles_; }  ///< by cells
 
  private:
+  void sort_into_cells(const std::vector<Triangle>& kept);
   std::int64_t cell_of(int axis, double at) const;
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
     return static_cast<std::size_t>((z * cells_[1] + y) * cells_[0] + x);
@@ -61,7 +64,6 @@ class PatchCells {
   std::vector<glm::vec3> points_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> starts_;
-  std::vector<std::uint8_t> evidence_;
 };
 
 struct PatchSize {

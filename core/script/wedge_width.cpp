@@ -40,14 +40,15 @@ struct Tried {
   }
 };
 
-Tried try_scale(const PatchCells& cells, const WedgeScale& scale, int rounds) {
+Tried try_scale(SurfaceLevels& surface, const WedgeScale& scale, int rounds) {
+  const PatchCells& cells = surface.for_width(scale.width_mm);
   const double tiles = 1.5 * cells.area_mm2() / (scale.width_mm * scale.width_mm);
   const int skip = std::max(1, static_cast<int>(tiles / kScaleTiles));
   std::vector<DeepPlace> places = deep_places(cells, scale, kScaleLeastDepth, skip);  // the deepest first
   const std::size_t every = (places.size() + kScalePlaces - 1) / kScalePlaces;
   for (std::size_t k = 0; k * every < places.size() && every > 1; ++k) places[k] = places[k * every];
   if (every > 1) places.resize((places.size() + every - 1) / every);
-  ReliefExplanation relief(cells, scale, places);
+  ReliefExplanation relief(surface, scale, places);
   relief.explain(rounds, kScaleCost);
   Tried out{scale, 0.0, relief.placed()};
   for (const PlacedImprint& one : out.placed) out.explained += one.gain;
@@ -66,15 +67,15 @@ WedgeScale usual_of(const Tried& tried) {
 
 }  // namespace
 
-WedgeScale wedge_scale(const PatchCells& cells, double width_mm) {
-  const glm::dvec3 e = cells.extent_mm();
+WedgeScale wedge_scale(SurfaceLevels& surface, double width_mm) {
+  const glm::dvec3 e = surface.fine().extent_mm();
   const double shortest = std::min({e.x, e.y, e.z});
   const double root = std::sqrt(e.x * e.y * e.z / std::max(shortest, 1e-12));
   Tried best;
   for (int size = 0; size < (width_mm > 0.0 ? 1 : kScaleSizes); ++size) {
     const double width = width_mm > 0.0 ? width_mm : root / kScaleFinest * std::exp2(size);
-    if (!(width_mm > 0.0) && width < kScaleFewestEdges * cells.mean_edge_mm()) continue;
-    Tried tried = try_scale(cells, {width, kScaleDepth * width}, 0);
+    if (!(width_mm > 0.0) && width < kScaleFewestEdges * surface.fine().mean_edge_mm()) continue;
+    Tried tried = try_scale(surface, {width, kScaleDepth * width}, 0);
     if (size == 0 || tried.clear() > best.clear()) best = std::move(tried);
   }
   if (best.placed.size() < kScaleFewest) return {};
@@ -84,10 +85,10 @@ WedgeScale wedge_scale(const PatchCells& cells, double width_mm) {
     if (fixed > 0.0) usual.width_mm = fixed;
     return usual;
   };
-  Tried better = try_scale(cells, usual_now(), 1);
+  Tried better = try_scale(surface, usual_now(), 1);
   if (!(fixed > 0.0) && better.clear() < kScaleAsClear * best.clear()) {
     fixed = best.scale.width_mm;
-    better = try_scale(cells, usual_now(), 1);
+    better = try_scale(surface, usual_now(), 1);
   }
   best = std::move(better);
   if (best.placed.size() < kScaleFewest) return {};
@@ -96,7 +97,7 @@ WedgeScale wedge_scale(const PatchCells& cells, double width_mm) {
   for (const double rounding : kScaleRoundings) {
     WedgeScale round = usual;
     round.rounding = rounding;
-    Tried tried = try_scale(cells, round, 1);
+    Tried tried = try_scale(surface, round, 1);
     if (tried.explained > best.explained) best = std::move(tried);
   }
   if (best.placed.size() < kScaleFewest) return {};
