@@ -48,6 +48,14 @@ json head_json(const HeadFrame& head) {
   return out;
 }
 
+json grip_json(std::size_t side, const HandGrip& grip) {
+  return {{"side", side},
+          {"closed", grip.closed},
+          {"controller", grip.controller},
+          {"at", numbers(grip.pose.position_m)},
+          {"q", numbers(grip.pose.rotation)}};
+}
+
 bool has_down(EventKind kind) {
   return kind == EventKind::kButton || kind == EventKind::kKey || kind == EventKind::kPinch;
 }
@@ -171,6 +179,14 @@ HeadFrame read_head(LineReader& read, const json& object) {
   return head;
 }
 
+void read_grip(LineReader& read, const json& object, HandGrips& grips) {
+  grips[static_cast<std::size_t>(read.whole(read.get(object, "side"), "side", 0, 1))] = {
+      true,
+      read.truth(object, "closed"),
+      read.truth(object, "controller"),
+      {read.vector(object, "at"), read.turn(object, "q")}};
+}
+
 InputEvent read_event(LineReader& read, const json& object) {
   InputEvent event;
   event.time = read.time(object);
@@ -214,6 +230,7 @@ RecordedFrame read_frame(LineReader& read, const json& object) {
   for (const json& item : read.list(object, "events", kMostThings)) out.frame.events.push_back(read_event(read, item));
   for (const json& item : read.list(object, "hands", kMaxHands)) out.frame.hands.push_back(read_hand(read, item));
   for (const json& item : read.list(object, "heads", 16)) out.frame.heads.push_back(read_head(read, item));
+  for (const json& item : read.list(object, "grips", 2)) read_grip(read, item, out.frame.grips);
   if (object.contains("puck")) {
     const json& puck = object.at("puck");
     out.frame.puck = PuckMotion{read.time(puck), read.vector(puck, "push"), read.vector(puck, "twist")};
@@ -229,6 +246,8 @@ std::string record_line(const RecordedFrame& recorded) {
   for (const InputEvent& event : frame.events) out["events"].push_back(event_json(event));
   for (const HandFrame& hand : frame.hands) out["hands"].push_back(hand_json(hand));
   for (const HeadFrame& head : frame.heads) out["heads"].push_back(head_json(head));
+  for (std::size_t side = 0; side < frame.grips.size(); ++side)
+    if (frame.grips[side].active) out["grips"].push_back(grip_json(side, frame.grips[side]));
   if (frame.puck)
     out["puck"] = {{"t", frame.puck->time}, {"push", numbers(frame.puck->push)}, {"twist", numbers(frame.puck->twist)}};
   return dump_json(out);

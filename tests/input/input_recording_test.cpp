@@ -57,6 +57,34 @@ TEST(Recording, AReplayedSessionEndsInTheSameView) {
   EXPECT_NEAR(original.view.zoom, again.view.zoom, 1e-4);
 }
 
+TEST(Recording, ATabletThatWasHeldIsWhereItWasLeft) {
+  const auto held = [](TimestampNs now) {  // closes on it at 1 s, carries and turns it, opens at 2 s
+    const double t = 1e-9 * static_cast<double>(now), way = std::clamp(t - 1.0, 0.0, 1.0);
+    InputFrame frame;
+    frame.time = now;
+    frame.grips[1] = {true,
+                      t >= 1.0 && t < 2.0,
+                      true,
+                      {{0.03 + 0.12 * way, 0.05 * way, 0.02}, glm::angleAxis(way, glm::dvec3(0, 0.6, 0.8))}};
+    return frame;
+  };
+  Navigator navigator(default_mapping().value());
+  std::string recording;
+  for (TimestampNs now = 0; now < 3'000'000'000; now += 11'000'000) {
+    const InputFrame frame = held(now);
+    navigator.update(now, frame, {});
+    recording += record_line({now, frame}) + "\n";
+  }
+  ASSERT_GT(turn_between_deg(navigator.view().rotation, {1, 0, 0, 0}), 50.0);
+  InputMixer replayed;
+  replayed.add(replay_of(frames_of(recording, "test").value()));
+  Navigator again(default_mapping().value());
+  for (TimestampNs now = 0; now < 3'200'000'000; now += 11'000'000) again.update(now, replayed.poll(now), {});
+  EXPECT_LT(turn_between_deg(navigator.view().rotation, again.view().rotation), 1e-3);
+  EXPECT_NEAR(glm::distance(navigator.view().pan, again.view().pan), 0.0, 1e-5);
+  EXPECT_NEAR(navigator.view().nearer, again.view().nearer, 1e-5);
+}
+
 TEST(Recording, EverythingInAFrameSurvives) {
   RecordedFrame frame{500, {}};
   frame.frame.time = 400;
@@ -83,11 +111,13 @@ TEST(Recording, EverythingInAFrameSurvives) {
   head.tracked = true;
   head.right_eye_m = glm::dvec3(0.03, 0.01, 0.6);
   frame.frame.heads = {head};
+  frame.frame.grips[1] = {true, true, false, {{0.25, -0.5, 0.125}, glm::angleAxis(1.5, glm::dvec3(0, 1, 0))}};
   const std::string line = record_line(frame);
   const auto back = frames_of(line, "test").value();
   ASSERT_EQ(back.size(), 1u);
   EXPECT_EQ(record_line(back[0]), line);
   EXPECT_EQ(back[0].frame.hands[0].id, 4'000'000'000u);
+  EXPECT_TRUE(back[0].frame.grips[1].closed && !back[0].frame.grips[0].active);
   EXPECT_FALSE(back[0].frame.hands[0].tracked);
   EXPECT_TRUE(back[0].frame.hands[0].joint(HandJoint::kLittleTip).valid);
   EXPECT_FALSE(back[0].frame.hands[0].joint(HandJoint::kIndexTip).valid);
