@@ -75,10 +75,13 @@ class OpenXrSink final : public OutputSink {
     if (!placed_ || frame->recentred) {
       const Pose head{0.5 * (frame->eyes[0].pose.position_m + frame->eyes[1].pose.position_m),
                       frame->eyes[0].pose.rotation};
-      room_from_screen_ = room_from_screen(head, frame->floor_m, place_);
+      const std::optional<Pose> panel = panel_before(frame->eyes);
+      room_from_screen_ = panel ? *panel : room_from_screen(head, frame->floor_m, place_);
+      on_panel_ = panel.has_value();
       placed_ = true;
     }
     wearer_ = moved_to_screen(*frame, room_from_screen_);
+    if (on_panel_) wearer_->floor_m.reset();  // there is no room to be seen, and no table in it
     return true;
   }
 
@@ -107,7 +110,7 @@ class OpenXrSink final : public OutputSink {
   std::array<View, 2> views_;
   std::optional<WearerFrame> wearer_;  ///< of the frame that was begun, in the screen's frame
   Pose room_from_screen_;
-  bool placed_ = false, nominal_ = true;
+  bool placed_ = false, on_panel_ = false, nominal_ = true;
 };
 
 }  // namespace
@@ -126,6 +129,21 @@ Pose room_from_screen(const Pose& head, const std::optional<double>& floor_m, co
   const double turn = std::atan2(-ahead.x, -ahead.z);  // about +Y, from +Z to the wearer
   out.rotation = glm::angleAxis(turn, glm::dvec3(0, 1, 0));
   return out;
+}
+
+std::optional<Pose> panel_before(const std::array<HeadsetEye, 2>& eyes) {
+  constexpr double kParallel = 1e-4, kSame = 0.02, kNearest = 0.1, kFarthest = 10.0;  // m
+  const auto& [left, right] = eyes;
+  if (std::abs(std::abs(glm::dot(left.pose.rotation, right.pose.rotation)) - 1.0) > kParallel) return std::nullopt;
+  const glm::dvec3 apart =
+      glm::conjugate(left.pose.rotation) * (right.pose.position_m - left.pose.position_m);  // in the eyes' frame
+  // The left eye sees less to the left and more to the right of a window than the right one does.
+  const double by_left_edge = apart.x / (left.left - right.left), by_right_edge = apart.x / (left.right - right.right);
+  const double distance = 0.5 * (by_left_edge + by_right_edge);
+  if (!(distance > kNearest && distance < kFarthest) || std::abs(by_left_edge - by_right_edge) > kSame * distance)
+    return std::nullopt;
+  const glm::dvec3 middle(0.5 * (left.left + left.right) * distance, 0.5 * (left.down + left.up) * distance, -distance);
+  return Pose{left.pose.position_m + left.pose.rotation * middle, left.pose.rotation};
 }
 
 WearerFrame moved_to_screen(const WearerFrame& room, const Pose& room_from_screen) {

@@ -1,6 +1,6 @@
 #pragma once
-// A head-mounted display through the machine's OpenXR runtime: the object stands life size before the wearer, and the
-// window shows what the left eye sees.
+// A head-mounted display through the machine's OpenXR runtime: the object stands life size before the wearer, or in
+// the panel that the runtime shows pictures on, and the window shows what the left eye sees.
 
 #include "display/headset/headset.h"
 #include "display/sinks/catalog/sink_options.h"
@@ -20,6 +20,10 @@ struct HeadsetPlace {
 /// The room's frame from the screen's: origin at the object's middle, +Y up, +Z level towards the wearer, for a head
 /// that looks along its -Z. Of a head that looks straight up or down, its +Y says where "before" is.
 Pose room_from_screen(const Pose& head, const std::optional<double>& floor_m, const HeadsetPlace& place);
+
+/// Of a runtime whose display is a panel on a desk: the panel's middle and its attitude, +Z towards the wearer. Both
+/// eyes' fields then end at the same edges, however far apart the eyes are. None: a headset, which has no such edges.
+std::optional<Pose> panel_before(const std::array<HeadsetEye, 2>& eyes);
 
 /// Poses moved from the room's frame to the screen's.
 WearerFrame moved_to_screen(const WearerFrame& room, const Pose& room_from_screen);

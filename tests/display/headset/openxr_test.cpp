@@ -275,5 +275,37 @@ TEST(RoomFromScreen, IsBeforeTheEyesWhicheverWayTheyLook) {
     }
 }
 
+TEST(PanelBefore, IsWhereBothEyesFieldsEndAtTheSameEdges) {
+  const Pose panel{{0.4, 1.1, -0.7}, glm::angleAxis(0.6, glm::normalize(glm::dvec3(0.2, 1.0, -0.1)))};
+  const double half_w = 0.172, half_h = 0.097;
+  for (const glm::dvec3& middle : {glm::dvec3(0, 0.1, 0.6), glm::dvec3(-0.2, -0.05, 0.4), glm::dvec3(0.3, 0, 1.2)}) {
+    std::array<HeadsetEye, 2> eyes;
+    for (const int eye : {0, 1}) {
+      const glm::dvec3 at = middle + glm::dvec3(eye == 0 ? -0.03 : 0.03, 0, 0);
+      eyes[static_cast<std::size_t>(eye)] = {{panel.position_m + panel.rotation * at, panel.rotation},
+                                             (-half_w - at.x) / at.z,
+                                             (half_w - at.x) / at.z,
+                                             (-half_h - at.y) / at.z,
+                                             (half_h - at.y) / at.z};
+    }
+    const auto found = panel_before(eyes);
+    ASSERT_TRUE(found);
+    EXPECT_LE(glm::distance(found->position_m, panel.position_m), 1e-9);
+    EXPECT_LE(degrees_between(found->rotation, panel.rotation), 1e-5);
+  }
+}
+
+TEST(PanelBefore, IsNoneForFieldsOfHeadsets) {
+  const Pose at{{-0.032, 1.6, 0}, {1, 0, 0, 0}}, other{{0.032, 1.6, 0}, {1, 0, 0, 0}};
+  EXPECT_FALSE(panel_before({HeadsetEye{at, -1, 1, -1, 1}, HeadsetEye{other, -1, 1, -1, 1}})) << "the same for both";
+  EXPECT_FALSE(panel_before({HeadsetEye{at, -1.2, 0.9, -1, 1}, HeadsetEye{other, -0.9, 1.2, -1, 1}}))
+      << "wider outside";
+  EXPECT_FALSE(panel_before({HeadsetEye{at, -0.9, 1.1, -1, 1}, HeadsetEye{other, -1.0, 0.8, -1, 1}}))
+      << "edges at two distances";
+  Pose canted = other;
+  canted.rotation = glm::angleAxis(0.1, glm::dvec3(0, 1, 0));
+  EXPECT_FALSE(panel_before({HeadsetEye{at, -1, 1.05, -1, 1}, HeadsetEye{canted, -1.05, 1, -1, 1}}));
+}
+
 }  // namespace
 }  // namespace dubsar
