@@ -47,6 +47,7 @@ struct PhantomOptions {
   double gap_vox = 0.0;           ///< between tablet and envelope elsewhere; 0: 0.3 mm, at least some voxels
   double wedge_depth_vox = 0.0;   ///< of a usual wedge; 0: 7 voxels, or more where 3.6 mm a line are more
   bool written = true;            ///< false: nobody wrote on the tablet
+  double pushed = 0.0;            ///< clay that a later wedge pushes into an earlier one beside it, of its depth
   bool ruled = true;              ///< lines are ruled; nothing else changes
   double envelope_density = 1.0;  ///< of the envelope's clay, relative to the tablet's
   double rings = 0.0;             ///< standard deviation of ring artefacts, relative to clay
@@ -59,9 +60,9 @@ struct PhantomOptions {
 Result<PhantomOptions> parse_preset(std::string_view name);
 
 /// Checks size (32 voxels to 65535 along each axis, and the memory budget's voxel limit), noise (0..120 dB or
-/// infinity), voxel edge, film (0.05 to 2 voxels), share of contact (up to 0.6), gap (1 to 64 voxels), wedges (2 to 64
-/// voxels), density (0.5 to 1.5), rings (up to 1), blur (0.3 to 1.1), cupping (up to 0.5), streaks (up to 0.3) and
-/// holder (0.02 to 3), and fills in voxel_mm when it is 0. kUsage.
+/// infinity), voxel edge, film (0.05 to 2 voxels), pushed clay (up to 0.5), share of contact (up to 0.6), gap (1 to 64
+/// voxels), wedges (2 to 64 voxels), density (0.5 to 1.5), rings (up to 1), blur (0.3 to 1.1), cupping (up to 0.5),
+/// streaks (up to 0.3) and holder (0.02 to 3), and fills in voxel_mm when it is 0. kUsage.
 Result<PhantomOptions> complete(PhantomOptions options);
 
 /// The scan shows a border between the two clays: a film of air, or different densities.

@@ -1,6 +1,7 @@
 #include "core/phantom/phantom.h"
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace dubsar::phantom {
 namespace {
@@ -22,8 +23,14 @@ Dual Phantom::impressions(const std::vector<Impression>& all, std::span<const st
   for (const std::uint32_t id : ids) {
     const Impression& impression = all[id];
     const Float4 d = point.p - impression.middle;
-    if (dot(d, d) < impression.radius2)
-      hollow = smooth_min(hollow, impression.field.evaluate(point, depth), edges_.rim_rounding);
+    if (dot(d, d) >= impression.radius2) continue;
+    const Dual later = impression.field.evaluate(point, depth);
+    const float reach = impression.field.nominal();
+    if (options_.pushed > 0.0 && hollow.v < kFar && later.v < reach) {  // it pushes clay into those before it
+      const float t = 1.0f - std::max(later.v, 0.0f) / reach, most = static_cast<float>(options_.pushed) * reach;
+      hollow = hollow + Dual{most * t * t, later.v > 0.0f ? later.g * (-2.0f * most * t / reach) : Float4{}};
+    }
+    hollow = smooth_min(hollow, later, edges_.rim_rounding);
   }
   return hollow;
 }
@@ -198,6 +205,18 @@ Label label_of(const Fields& f) {
 
 Label Phantom::label(const glm::dvec3& p) const {
   return label_of(fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)));
+}
+
+bool Phantom::overlap(std::size_t first, std::size_t second) const {
+  if (wedges_[first].owner != wedges_[second].owner || glm::dot(wedges_[first].outward, wedges_[second].outward) < 0.7)
+    return false;  // fields of imprints go on below their own surface
+  const auto field_of = [&](std::size_t k) -> const Impression& {
+    return wedges_[k].owner == Owner::kTablet ? tablet_.wedges[k] : outer_.wedges[k - tablet_.wedges.size()];
+  };
+  const Impression &a = field_of(first), &b = field_of(second);
+  const Float4 d = a.middle - b.middle;
+  if (dot(d, d) > 2.0f * (a.radius2 + b.radius2)) return false;
+  return a.field.meets(b.field);
 }
 
 bool Phantom::on_tablet_side(const glm::dvec3& p) const {

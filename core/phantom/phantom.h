@@ -90,6 +90,8 @@ class Phantom {
 
   const PhantomOptions& options() const noexcept { return options_; }
   const std::vector<Wedge>& wedges() const noexcept { return wedges_; }
+  /// Two of wedges() share some of their room. Those of one owner are in the order in which they were pressed.
+  bool overlap(std::size_t first, std::size_t second) const;
   /// Part of the tablet's surface where there is no air between it and the envelope, or a film of it, 0..1.
   double glued_fraction() const noexcept { return glued_fraction_; }
   bool cracked() const noexcept { return crack_.radius2 > 0.0f; }

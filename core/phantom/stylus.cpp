@@ -66,6 +66,20 @@ float WedgeField::depth_at(float along) const {
   return air;
 }
 
+bool WedgeField::meets(const WedgeField& other) const {
+  constexpr int kPlaces = 16;
+  const float length = std::max(front_, tail_length_) + back_, half = nominal_;
+  for (int i = 0; i <= kPlaces; ++i)
+    for (int j = 0; j <= kPlaces; ++j) {
+      Point point;
+      point.p = place_ + along_ * (length * static_cast<float>(i) / kPlaces - back_) +
+                across_ * (half * (2.0f * static_cast<float>(j) / kPlaces - 1.0f));
+      const Dual below{1.0f, Float4{}};
+      if (evaluate(point, below).v < 0.0f && other.evaluate(point, below).v < 0.0f) return true;
+    }
+  return false;
+}
+
 float WedgeField::deepest_along() const {
   // It has one deepest place: golden sections.
   constexpr float kShare = 0.618034f;

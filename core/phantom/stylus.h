@@ -32,6 +32,10 @@ class WedgeField {
   /// impression follows a curved surface.
   Dual evaluate(const Point& point, const Dual& depth_below_surface) const;
 
+  float nominal() const noexcept { return nominal_; }  ///< depth, voxels
+  /// Both are a voxel and more deep at some place.
+  bool meets(const WedgeField& other) const;
+
   /// Voxels along the tail from its place to where the impression is deepest: rounding moves it there.
   float deepest_along() const;
 

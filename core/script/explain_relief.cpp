@@ -127,18 +127,19 @@ PlacedImprint ReliefExplanation::placed_at(std::size_t k) const {
 void ReliefExplanation::look_beside(std::size_t k, DepthSamples& samples) const {
   const WedgeSite& site = sites_[k];
   std::fill(samples.others.begin(), samples.others.end(), 0.0f);
-  for (const std::uint32_t j : near_[k]) {
-    if (!fits_[j].active) continue;
-    const PlacedImprint other = placed_at(j);
-    const glm::dvec3 off = (site.origin - other.foot) / scale_.width_mm;
-    const auto along = [&](const glm::dvec3& axis) {
-      return std::array<float, 4>{
-          static_cast<float>(glm::dot(off, axis)), static_cast<float>(glm::dot(site.right, axis)),
-          static_cast<float>(glm::dot(site.up, axis)), static_cast<float>(glm::dot(site.out, axis))};
-    };
-    explain_by_other(other.imprint,
-                     {along(other.along), along(glm::cross(other.normal, other.along)), along(other.normal)}, samples);
-  }
+  for (const std::uint32_t j : near_[k])
+    if (fits_[j].active) add_other(site, placed_at(j), samples);
+}
+
+void ReliefExplanation::add_other(const WedgeSite& site, const PlacedImprint& other, DepthSamples& samples) const {
+  const glm::dvec3 off = (site.origin - other.foot) / scale_.width_mm;
+  const auto along = [&](const glm::dvec3& axis) {
+    return std::array<float, 4>{static_cast<float>(glm::dot(off, axis)), static_cast<float>(glm::dot(site.right, axis)),
+                                static_cast<float>(glm::dot(site.up, axis)),
+                                static_cast<float>(glm::dot(site.out, axis))};
+  };
+  explain_by_other(other.imprint,
+                   {along(other.along), along(glm::cross(other.normal, other.along)), along(other.normal)}, samples);
 }
 
 double ReliefExplanation::gain_beside(std::size_t k, const Imprint& imprint, DepthSamples& samples) const {

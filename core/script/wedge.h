@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "core/base/text/enum_names.h"
 #include "core/mesh/evidence.h"
@@ -34,6 +35,12 @@ struct TextPlace {
   int column = 1, line = 0, order = 0;
 };
 
+/// A wedge that was pressed before another that it overlaps.
+struct WedgeBefore {
+  int order = 0;
+  double clear = 0.0;  ///< by how much more it is filled than the later one where they meet, of a usual depth
+};
+
 /// Lengths in mm, points in the mesh's frame in mm.
 struct ScriptWedge : TextPlace {
   glm::dvec3 head_mm{0.0};        ///< middle of the head's edge, on the writing surface
@@ -47,6 +54,8 @@ struct ScriptWedge : TextPlace {
   double width_mm = 0.0;          ///< between the corners
   double opening_deg = 0.0;       ///< inner dihedral angle of the flanks
   double confidence = 0.0;        ///< 0..1: of being a wedge of this place and direction
+  int id = 0;                     ///< as it was found: order says where it stands in the text
+  std::vector<WedgeBefore> pressed_after;
   WedgeKind kind = WedgeKind::kOdd;
   Evidence evidence = Evidence::kMeasured;
 };

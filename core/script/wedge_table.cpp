@@ -1,6 +1,7 @@
 #include "core/script/wedge_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -8,14 +9,25 @@
 
 namespace dubsar {
 
+namespace {
+
+std::vector<int> orders_before(const ScriptWedge& w) {
+  std::vector<int> out;
+  for (const WedgeBefore& before : w.pressed_after) out.push_back(before.order);
+  return out;
+}
+
+}  // namespace
+
 std::string wedges_csv(std::span<const ScriptWedge> wedges) {
   std::string out = fmt::format("{},{}\n", kWedgeColumns, kUnsealed);
   const auto point = [](const glm::dvec3& p) { return fmt::format("{:.4f},{:.4f},{:.4f}", p.x, p.y, p.z); };
+  const auto before = [](const ScriptWedge& w) { return fmt::format("{}", fmt::join(orders_before(w), ";")); };
   for (const ScriptWedge& w : wedges)
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.1f},,{:.3f},{},\n", w.order,
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.1f},{},{:.3f},{},\n", w.order,
                        name_in(kTextSides, w.side), w.column, w.line, w.order, name_in(kWedgeKinds, w.kind),
                        point(w.head_mm), point(w.tip_mm), point(w.tail_mm), point(w.normal), w.depth_mm, w.length_mm,
-                       w.width_mm, w.opening_deg, w.confidence, name_in(kEvidences, w.evidence));
+                       w.width_mm, w.opening_deg, before(w), w.confidence, name_in(kEvidences, w.evidence));
   return sealed_text(std::move(out));
 }
 
@@ -29,6 +41,7 @@ std::string wedges_json(const WedgesFound& found, const std::string& made_by) {
                              {"unit", "mm"},
                              {"frame", "of the scan: voxel index times voxel size"},
                              {"usual_width_mm", rounded(found.scale.width_mm, 1e4)},
+                             {"misfit", rounded(found.scale.misfit, 1e4)},
                              {"up_probability", found.sides.frame().up_probability},
                              {"obverse_probability", found.sides.frame().obverse_probability},
                              {"wedges", nlohmann::ordered_json::array()}};
@@ -48,7 +61,7 @@ std::string wedges_json(const WedgesFound& found, const std::string& made_by) {
                              {"length_mm", rounded(w.length_mm, 1e4)},
                              {"width_mm", rounded(w.width_mm, 1e4)},
                              {"opening_deg", rounded(w.opening_deg, 10)},
-                             {"pressed_after", nullptr},
+                             {"pressed_after", orders_before(w)},
                              {"confidence", rounded(w.confidence, 1e3)},
                              {"evidence", name_in(kEvidences, w.evidence)},
                              {"source", "machine"}});

@@ -21,7 +21,8 @@ namespace dubsar {
 namespace {
 
 constexpr std::string_view kHelp =
-    "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--unruled] [--envelope] "
+    "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--unruled] [--pushed "
+    "SHARE] [--envelope] "
     "[--keep DIR]\n"
     "             [--each] [--subdivide TIMES]\n"
     "  --depth     of a usual wedge (7)\n"
@@ -34,7 +35,7 @@ struct ScriptArguments {
   Dims dims{320, 192, 304};
   std::uint64_t seed = 1;
   int seeds = 1, subdivide = 0;
-  double depth = 7.0;
+  double depth = 7.0, pushed = 0.0;
   bool unwritten = false, unruled = false, envelope = false, each = false;
   std::string keep;
 };
@@ -66,6 +67,8 @@ ScriptArguments parse_script(int argc, char** argv) {
       a.subdivide = std::atoi(value);
     } else if (word == "--depth") {
       a.depth = std::atof(value);
+    } else if (word == "--pushed") {
+      a.pushed = std::atof(value);
     } else if (word == "--keep") {
       a.keep = value;
     } else if (word == "--size") {
@@ -89,9 +92,9 @@ T script_value(Result<T> result) {
 SurfaceModel surface_of(const phantom::PhantomOptions& options, const std::string& keep, Progress& progress) {
   namespace fs = std::filesystem;
   const fs::path kept =
-      fs::path(keep) / fmt::format("s{}_{}x{}x{}_d{:g}{}{}.exa", options.seed, options.dims.x, options.dims.y,
+      fs::path(keep) / fmt::format("s{}_{}x{}x{}_d{:g}{}{}{}.exa", options.seed, options.dims.x, options.dims.y,
                                    options.dims.z, options.wedge_depth_vox, options.written ? "" : "_unwritten",
-                                   options.ruled ? "" : "_unruled");
+                                   options.ruled ? "" : "_unruled", options.pushed > 0.0 ? "_pushed" : "");
   if (!keep.empty() && fs::exists(kept)) return script_value(read_exa(kept, progress));
   const fs::path scan = fs::temp_directory_path() / fmt::format("dubsar_script_{}.h5", ::getpid());
   script_value(phantom::write_phantom(scan, std::nullopt, options, progress));
@@ -170,6 +173,7 @@ int run_script(int argc, char** argv) {
     options.wedge_depth_vox = a.unwritten ? 0.0 : a.depth;
     options.written = !a.unwritten;
     options.ruled = !a.unruled;
+    options.pushed = a.pushed;
     const auto truth = script_value(phantom::Phantom::create(options));
     const SurfaceModel model = surface_of(options, a.keep, progress);
     TriMesh mesh = a.envelope ? script_value(make_tri_mesh(
@@ -183,10 +187,14 @@ int run_script(int argc, char** argv) {
         *truth, found.wedges,
         {.owner = a.envelope ? phantom::Owner::kEnvelope : phantom::Owner::kTablet, .grid_step = mesh.frame.scale.x});
     const double voxel = truth->options().voxel_mm;
-    fmt::print("seed {} width {:.2f} depth {:.2f} rounding {:.2f} voxels, {} places, {} vertices, {:.2f} s: {}\n",
-               options.seed, found.scale.width_mm / voxel, found.scale.depth_mm / voxel,
-               found.scale.rounding * found.scale.width_mm / voxel, found.places, mesh.positions.size(), seconds,
-               score.text());
+    fmt::print(
+        "seed {} width {:.2f} depth {:.2f} rounding {:.2f} voxels, misfit {:.3f} broad {:.2f}, {} places, {} vertices, "
+        "{:.2f} s: {}\n",
+        options.seed, found.scale.width_mm / voxel, found.scale.depth_mm / voxel,
+        found.scale.rounding * found.scale.width_mm / voxel, found.scale.misfit, found.scale.fitted, found.places,
+        mesh.positions.size(), seconds, score.text());
+    for (const auto& [clear, right] : score.pair_clear)
+      if (a.each) fmt::print("pair {:.4f} {}\n", clear, right);
     if (a.each) print_each(*truth, found, score);
     std::fflush(stdout);
     all.add(score);

@@ -20,7 +20,8 @@ struct Pressed {
 constexpr double kPlateWidth = 2.0, kPlateDepth = 1.1, kPlateBack = 0.6, kPlateFront = 1.6, kPlateTail = 4.5;
 constexpr double kPlateHalf = 22.0, kPlateThick = 4.0, kPlateStep = 0.2;
 
-double plate_depth(const std::vector<Pressed>& wedges, double x, double y) {
+/// `push`: of the depth, how much clay of a later wedge's place moves into those before it.
+double plate_depth(const std::vector<Pressed>& wedges, double x, double y, double push = 0.0) {
   double depth = 0.0;
   for (const Pressed& w : wedges) {
     const double c = std::cos(w.angle), s = std::sin(w.angle), a = c * (x - w.x) + s * (y - w.y),
@@ -30,13 +31,15 @@ double plate_depth(const std::vector<Pressed>& wedges, double x, double y) {
         kPlateDepth * (1 - a / kPlateFront) - b * 2 * kPlateDepth * (1 + kPlateBack / kPlateFront) / kPlateWidth);
     const double tail =
         a < 0 ? 0.0 : 0.6 * kPlateDepth * (1 - a / kPlateTail) - b * 1.2 * kPlateDepth / (0.5 * kPlateWidth);
+    const double beside = std::max(0.0, -(a < 0 ? head : std::max(head, tail))) / kPlateDepth;
+    if (beside < 1.0) depth = std::max(0.0, depth - push * kPlateDepth * (1 - beside) * (1 - beside));
     depth = std::max({depth, head, tail});
   }
   return depth;
 }
 
 /// A closed box whose upper face (z = 0) is written.
-TriMesh plate(const std::vector<Pressed>& wedges, double step = kPlateStep) {
+TriMesh plate(const std::vector<Pressed>& wedges, double step = kPlateStep, double push = 0.0) {
   TriMesh mesh;
   mesh.frame.input_voxel.mm = glm::dvec3(1.0);
   mesh.frame.input_voxel.provenance = "test";
@@ -55,7 +58,8 @@ TriMesh plate(const std::vector<Pressed>& wedges, double step = kPlateStep) {
       }
   };
   const auto at = [](double u) { return kPlateHalf * (2 * u - 1); };
-  add_face([&](double u, double v) { return glm::dvec3(at(u), at(v), -plate_depth(wedges, at(u), at(v))); }, false);
+  add_face([&](double u, double v) { return glm::dvec3(at(u), at(v), -plate_depth(wedges, at(u), at(v), push)); },
+           false);
   add_face([&](double u, double v) { return glm::dvec3(at(u), at(v), -kPlateThick); }, true);
   for (const double side : {-1.0, 1.0}) {
     add_face([&](double u, double v) { return glm::dvec3(side * kPlateHalf, at(u), -kPlateThick * (1 - v)); },
@@ -114,6 +118,43 @@ TEST(PressedWedges, AreAsWideOnACoarseMeshAsOnAFineOne) {
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_NEAR(found->scale.width_mm, kPlateWidth, 0.25 * kPlateWidth) << "edges of " << step << " mm";
   }
+}
+
+/// Uprights over horizontals and the other way about: what was pressed later is whole.
+TEST(PressedWedges, TheLaterOfTwoIsWhole) {
+  std::vector<Pressed> page;
+  int pairs = 0;
+  for (double y = 14.0; y > -18.0; y -= 7.5)
+    for (double x = -15.0; x < 16.0; x += 7.5, ++pairs) {
+      const Pressed upright{x, y, -std::numbers::pi / 2}, level{x - 1.6, y - 1.2, 0.0};
+      page.push_back(pairs % 2 ? upright : level);
+      page.push_back(pairs % 2 ? level : upright);
+    }
+  Progress progress;
+  const auto found = find_wedges(plate(page, kPlateStep, 0.15), {}, progress);
+  ASSERT_TRUE(found) << found.error().message;
+  const auto which = [&](const ScriptWedge& f) {
+    std::size_t best = 0;
+    const auto off = [&](std::size_t k) {
+      const glm::dvec3 along(std::cos(page[k].angle), std::sin(page[k].angle), 0.0);
+      return glm::distance(f.head_mm, glm::dvec3(page[k].x, page[k].y, 0.0) - kPlateBack * along) +
+             glm::distance(f.direction, along);
+    };
+    for (std::size_t k = 1; k < page.size(); ++k)
+      if (off(k) < off(best)) best = k;
+    return best;
+  };
+  int told = 0, right = 0;
+  for (const ScriptWedge& later : found->wedges)
+    for (const WedgeBefore& before : later.pressed_after) {
+      const std::size_t k = which(later), j = which(found->wedges[static_cast<std::size_t>(before.order) - 1]);
+      if (k / 2 != j / 2) continue;
+      ++told;
+      right += k > j;
+    }
+  EXPECT_GE(told, 0.8 * pairs) << found->wedges.size() << " wedges, usual width " << found->scale.width_mm << " misfit "
+                               << found->scale.misfit << " broad " << found->scale.fitted;
+  EXPECT_GE(right, 0.9 * told);
 }
 
 TEST(PressedWedges, UnwrittenClayHasNone) {

@@ -95,6 +95,22 @@ WedgeScore judge_wedges(const phantom::Phantom& truth, std::span<const ScriptWed
     ++lines[of][pressed];
     in_line.push_back({of[0], of[1], pressed});
   }
+  for (std::size_t f = 0; f < found.size(); ++f)
+    for (std::size_t g = f + 1; g < found.size(); ++g) {
+      const int t = score.judged[f].truth, u = score.judged[g].truth;
+      if (t < 0 || u < 0 || !truth.overlap(static_cast<std::size_t>(t), static_cast<std::size_t>(u))) continue;
+      ++score.pairs;
+      const auto after = [&](std::size_t later, std::size_t earlier, bool right) {
+        for (const WedgeBefore& before : found[later].pressed_after)
+          if (before.order == found[earlier].order) {
+            ++score.pairs_told;
+            score.pairs_right += right;
+            score.pair_clear.push_back({before.clear, right ? 1.0 : 0.0});
+          }
+      };
+      after(f, g, t > u);
+      after(g, f, u > t);
+    }
   // A line that was found is one that was pressed, and no other is the same: those that share most wedges, first.
   std::vector<std::array<int, 4>> shared;  // wedges, side, line, pressed
   for (const auto& [found_line, pressed_lines] : lines)
@@ -116,6 +132,8 @@ void WedgeScore::add(const WedgeScore& o) {
   wanted += o.wanted, found += o.found, drawn += o.drawn, real += o.real, placed += o.placed;
   kind_right += o.kind_right, line_right += o.line_right;
   const auto join = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  pairs += o.pairs, pairs_told += o.pairs_told, pairs_right += o.pairs_right;
+  join(pair_clear, o.pair_clear);
   join(depth_ratios, o.depth_ratios);
   join(direction_deg, o.direction_deg);
   join(head_off_vox, o.head_off_vox);
@@ -138,6 +156,7 @@ std::string WedgeScore::text() const {
       wanted, found, recall(), drawn, real, precision(), placed, kind_share(),
       found ? static_cast<double>(line_right) / found : 0.0, middle_of(depth_ratios), middle_of(off),
       middle_of(direction_deg), middle_of(head_off_vox));
+  out += fmt::format(" of {} pairs order of {} told, {} right;", pairs, pairs_told, pairs_right);
   for (std::size_t k = 0; k < wanted_of_kind.size(); ++k)
     if (wanted_of_kind[k])
       out += fmt::format(" {} {:.2f}", phantom::kStrokeKinds[k].name.substr(0, 9),

@@ -25,6 +25,7 @@ ScriptWedge one_wedge() {
   w.side = TextSide::kReverse;
   w.line = 3;
   w.order = 17;
+  w.pressed_after = {{4, 0.1}, {16, 0.2}};
   return w;
 }
 
@@ -36,8 +37,8 @@ TEST(WedgeTable, ARowHasAValueForEachColumn) {
   EXPECT_TRUE(is_sealed_text(csv));
   EXPECT_EQ(std::count(row.begin(), row.end(), ','), std::count(head.begin(), head.end(), ','));
   EXPECT_TRUE(row.starts_with("17,reverse,1,3,17,vertical,1.5000,-2.2500,3.0000,"));
-  EXPECT_TRUE(row.ends_with(",0.800,4.0000,2.0000,0.0,,0.900,measured,\n") ||
-              row.ends_with(",0.8000,4.0000,2.0000,0.0,,0.900,measured,\n"));
+  EXPECT_TRUE(row.ends_with(",0.800,4.0000,2.0000,0.0,4;16,0.900,measured,\n") ||
+              row.ends_with(",0.8000,4.0000,2.0000,0.0,4;16,0.900,measured,\n"));
 }
 
 TEST(WedgeTable, JsonSaysTheSame) {
@@ -48,7 +49,7 @@ TEST(WedgeTable, JsonSaysTheSame) {
   EXPECT_EQ(json["made_by"], "dubsar 1");
   EXPECT_EQ(json["wedges"][0]["kind"], "vertical");
   EXPECT_EQ(json["wedges"][0]["head"][1], -2.25);
-  EXPECT_TRUE(json["wedges"][0]["pressed_after"].is_null());
+  EXPECT_EQ(json["wedges"][0]["pressed_after"], nlohmann::json::array({4, 16}));
 }
 
 TEST(WedgeTable, KindsFollowTheAngleToTheLine) {
