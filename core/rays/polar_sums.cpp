@@ -116,12 +116,12 @@ void PolarSums::add(const PolarSums& other) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other.sum[i], weight[i] += other.weight[i];
 }
 
-PolarSums PolarSums::half_from(std::int64_t quarter) const {
+PolarSums PolarSums::half_from(std::int64_t first_sector) const {
   PolarSums half = *this;
-  const std::int64_t begin = quarter * PolarSlice::kSectors / 4;
   for (const bool clay : {false, true})
     for (std::int64_t sector = PolarSlice::kSectors / 2; sector < PolarSlice::kSectors; ++sector)
-      for (std::int64_t r = 0; r < radii; ++r) half.weight[at(clay, (begin + sector) % PolarSlice::kSectors, r)] = 0.0;
+      for (std::int64_t r = 0; r < radii; ++r)
+        half.weight[at(clay, (first_sector + sector) % PolarSlice::kSectors, r)] = 0.0;
   return half;
 }
 

@@ -44,8 +44,8 @@ struct PolarSums {
     return static_cast<std::size_t>(((clay ? PolarSlice::kSectors : 0) + sector) * radii + radius);
   }
   void add(const PolarSums& other);
-  /// Of half a turn, from a quarter of it on.
-  PolarSums half_from(std::int64_t quarter) const;
+  /// Of half a turn, from a sector on; counts on over the last.
+  PolarSums half_from(std::int64_t first_sector) const;
 };
 
 /// What is the same over all angles, for each whole distance: 0 with an infinite error where too little is seen.

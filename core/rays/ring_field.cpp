@@ -14,13 +14,15 @@ std::int64_t radii_of(const Dims& dims, const glm::dvec2& centre) {
 }
 
 void RingField::subtract(std::int64_t y, std::int64_t z, std::span<float> row) const {
-  const float* const rings = of_slice.data() + z * radii;
+  const float* const of_arcs = of_slice.data() + z * arcs() * radii;
+  const double line_x = half ? std::cos(half->angle) : 0.0, line_y = half ? std::sin(half->angle) : 0.0;
   const double across = static_cast<double>(y) - centre.y;
   for (std::size_t x = 0; x < row.size(); ++x) {
     const double along = static_cast<double>(x) - centre.x;
     const auto radius = static_cast<float>(std::sqrt(along * along + across * across));
     const auto ring = static_cast<std::int64_t>(radius);
     if (ring + 1 >= radii) continue;
+    const float* const rings = of_arcs + (line_x * across - line_y * along < 0.0 ? radii : 0);
     const float t = radius - static_cast<float>(ring);
     row[x] -= rings[ring] + t * (rings[ring + 1] - rings[ring]);
   }

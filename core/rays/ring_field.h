@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,11 +11,20 @@
 
 namespace dubsar {
 
+/// Where rings change in scans of half a turn, in which a pixel sees one side of the axis: half rings on both sides of
+/// a line through it.
+struct HalfTurn {
+  double angle = 0.0;  ///< of that line from x to y, radians
+};
+
 /// Grey values at whole distances from an axis along z, linear in between; nothing beyond the last.
 struct RingField {
-  glm::dvec2 centre{0.0};       ///< x and y of the axis, voxels
-  std::int64_t radii = 0;       ///< of a slice
-  std::vector<float> of_slice;  ///< radii values a slice
+  glm::dvec2 centre{0.0};        ///< x and y of the axis, voxels
+  std::int64_t radii = 0;        ///< of a slice
+  std::vector<float> of_slice;   ///< radii values a slice, or as many for the left of the line and then for its right
+  std::optional<HalfTurn> half;  ///< nothing: whole rings
+
+  std::int64_t arcs() const noexcept { return half ? 2 : 1; }
 
   /// Takes the rings off a row of the volume.
   void subtract(std::int64_t y, std::int64_t z, std::span<float> row) const;

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "core/base/system/log.h"
 #include "core/base/system/parallel.h"
-#include "core/rays/polar_sums.h"
+#include "core/rays/ring_slices.h"
 
 namespace dubsar {
 namespace {
 
 constexpr std::int64_t kRingsLook = 8, kRingsBlock = 16, kRingsLeastSide = 32;
-constexpr std::int64_t kRingsMargin = 1;       ///< steps of half the resolution
 constexpr double kRingsCentreReach = 2.0;      ///< voxels
 constexpr double kRingsControl = 7.0;          ///< how far aside the centre is right for no ring
 constexpr std::int64_t kRingsLeastShared = 8;  ///< distances with both clay and air
@@ -22,73 +22,25 @@ constexpr std::int64_t kRingsLeastShared = 8;  ///< distances with both clay and
 constexpr double kRingsLeastAgreement = 8.0, kRingsLeastAlike = 0.6, kRingsMostControl = 0.3, kRingsChance = 3.0;
 /// A ring stands out by so many errors (one distance of a thousand by chance), and is as even over the angles.
 constexpr double kRingsErrors = 3.5, kRingsMostUneven = 0.4;
-
-/// Slices of the scan, each with what of it is sure at half the resolution.
-struct RingSlices {
-  std::int64_t first = 0;
-  std::vector<std::vector<float>> values;
-  std::vector<std::vector<Material>> sure;
-};
-
-/// Away from the other side of `level` by the margin in all directions.
-Result<std::vector<Material>> sure_in_slice(SlabSource& half, std::int64_t z, float level) {
-  const Dims d = half.dims();
-  std::vector<float> slice(static_cast<std::size_t>(d.slice()));
-  std::vector<std::uint8_t> clay(slice.size(), 1), air(slice.size(), 1);
-  for (std::int64_t k = std::max<std::int64_t>(0, z - kRingsMargin); k <= std::min(d.z - 1, z + kRingsMargin); ++k) {
-    DUBSAR_TRY(half.read(k, k + 1, slice));
-    for (std::size_t i = 0; i < slice.size(); ++i) (slice[i] >= level ? air : clay)[i] = 0;
-  }
-  std::vector<Material> sure(slice.size(), Material::kUnsure);
-  parallel_for(d.y, 16, [&](std::int64_t y) {
-    for (std::int64_t x = 0; x < d.x; ++x) {
-      bool all_clay = true, all_air = true;
-      for (std::int64_t v = std::max<std::int64_t>(0, y - kRingsMargin); v <= std::min(d.y - 1, y + kRingsMargin); ++v)
-        for (std::int64_t u = std::max<std::int64_t>(0, x - kRingsMargin); u <= std::min(d.x - 1, x + kRingsMargin);
-             ++u) {
-          all_clay &= clay[static_cast<std::size_t>(v * d.x + u)] != 0;
-          all_air &= air[static_cast<std::size_t>(v * d.x + u)] != 0;
-        }
-      sure[static_cast<std::size_t>(y * d.x + x)] = all_clay  ? Material::kClay
-                                                    : all_air ? Material::kAir
-                                                              : Material::kUnsure;
-    }
-  });
-  return sure;
-}
-
-Result<void> add_slice(SlabSource& scan, SlabSource& half, std::int64_t z, float level, RingSlices& slices) {
-  std::vector<float>& values = slices.values.emplace_back(static_cast<std::size_t>(scan.dims().slice()));
-  DUBSAR_TRY(scan.read(z, z + 1, values));
-  DUBSAR_ASSIGN(std::vector<Material> sure, sure_in_slice(half, std::min(z / 2, half.dims().z - 1), level));
-  slices.sure.push_back(std::move(sure));
-  return {};
-}
-
-/// Of each slice.
-std::vector<PolarSums> sums_of(const PolarSlice& polar, const RingSlices& slices) {
-  std::vector<PolarSums> sums(slices.values.size(), PolarSums(polar.radii()));
-  parallel_for(static_cast<std::int64_t>(sums.size()), 1, [&](std::int64_t i) {
-    const auto k = static_cast<std::size_t>(i);
-    polar.add(slices.values[k], slices.sure[k], sums[k]);
-  });
-  return sums;
-}
-
-PolarSums all_of(const std::vector<PolarSums>& sums) {
-  PolarSums all(sums.front().radii);
-  for (const PolarSums& one : sums) all.add(one);
-  return all;
-}
+/// Of the contrast: rings that reach the other side of the level are taken for surfaces, and looked for again where
+/// thin ones are left out.
+constexpr double kRingsStrong = 0.2;
 
 /// Whether clay and air, or two halves of the turn, have the same rings.
 struct Agreement {
   double together = 0.0;  ///< sum of products, in deviations of chance
   double alike = 0.0;
 };
-Agreement agreement(const AngularConstants& air, const AngularConstants& clay) {
+struct AgreementSums {
   double products = 0.0, chance = 0.0, of_air = 0.0, of_clay = 0.0;
   std::int64_t shared = 0;
+  void add(const AngularConstants& air, const AngularConstants& clay);
+  Agreement result() const noexcept {
+    if (shared < kRingsLeastShared || !(chance > 0.0)) return {};
+    return {products / std::sqrt(chance), of_air > 0.0 && of_clay > 0.0 ? products / std::sqrt(of_air * of_clay) : 0.0};
+  }
+};
+void AgreementSums::add(const AngularConstants& air, const AngularConstants& clay) {
   for (std::size_t r = 0; r < air.value.size(); ++r) {
     if (!std::isfinite(air.error[r]) || !std::isfinite(clay.error[r])) continue;
     ++shared;
@@ -98,8 +50,23 @@ Agreement agreement(const AngularConstants& air, const AngularConstants& clay) {
     of_air += air.value[r] * air.value[r] - a2;
     of_clay += clay.value[r] * clay.value[r] - c2;
   }
-  if (shared < kRingsLeastShared || !(chance > 0.0)) return {};
-  return {products / std::sqrt(chance), of_air > 0.0 && of_clay > 0.0 ? products / std::sqrt(of_air * of_clay) : 0.0};
+}
+
+Agreement agreement(const AngularConstants& air, const AngularConstants& clay) {
+  AgreementSums sums;
+  sums.add(air, clay);
+  return sums.result();
+}
+
+/// The turn as a whole, or both halves of it from `half_turn` on.
+std::vector<PolarSums> arcs_of(const PolarSums& sums, const std::optional<std::int64_t>& half_turn) {
+  std::vector<PolarSums> arcs;
+  if (half_turn)
+    for (const std::int64_t first : {*half_turn, *half_turn + PolarSlice::kSectors / 2})
+      arcs.push_back(sums.half_from(first));
+  else
+    arcs.push_back(sums);
+  return arcs;
 }
 
 Agreement agreement_about(const RingSlices& slices, const Dims& dims, const glm::dvec2& centre) {
@@ -107,15 +74,64 @@ Agreement agreement_about(const RingSlices& slices, const Dims& dims, const glm:
   return agreement(found[0], found[1]);
 }
 
+/// The same in each slice: pixels of other slices are others, and near the axis all that is air may be above the
+/// object. What noise leaves of it is less sure, so that it counts where it is sure and better.
+Agreement agreement_of_slices(const RingSlices& slices, const Dims& dims, const glm::dvec2& centre,
+                              const std::optional<std::int64_t>& half_turn) {
+  const std::vector<PolarSums> sums = sums_of(PolarSlice(dims, centre), slices);
+  AgreementSums one_by_one, together;
+  for (const PolarSums& slice : sums)
+    for (const PolarSums& arc : arcs_of(slice, half_turn)) {
+      const auto found = constants_over_angles(arc);
+      one_by_one.add(found[0], found[1]);
+    }
+  for (const PolarSums& arc : arcs_of(all_of(sums), half_turn)) {
+    const auto found = constants_over_angles(arc);
+    together.add(found[0], found[1]);
+  }
+  const Agreement each = one_by_one.result(), all = together.result();
+  return each.together >= kRingsLeastAgreement && each.alike > all.alike ? each : all;
+}
+
+/// The most of it where no ring has its centre: beside the centre in four directions.
+double agreement_beside(const RingSlices& slices, const Dims& dims, const glm::dvec2& centre,
+                        const std::optional<std::int64_t>& half_turn) {
+  double most = 0.0;
+  for (const glm::dvec2 way : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
+    most = std::max(most, agreement_of_slices(slices, dims, centre + kRingsControl * way, half_turn).together);
+  return most;
+}
+
 /// Correlation of opposite halves of the turn, the lesser of two: scans of half a turn have half rings.
 double alike_in_halves(const RingSlices& slices, const Dims& dims, const glm::dvec2& centre) {
   const PolarSums sums = all_of(sums_of(PolarSlice(dims, centre), slices));
   double least = 1.0;
-  for (const std::int64_t quarter : {0, 1})
-    least = std::min(least, agreement(constants_over_angles(sums.half_from(quarter))[2],
-                                      constants_over_angles(sums.half_from(quarter + 2))[2])
+  for (const std::int64_t first : {std::int64_t{0}, PolarSlice::kSectors / 4})
+    least = std::min(least, agreement(constants_over_angles(sums.half_from(first))[2],
+                                      constants_over_angles(sums.half_from(first + PolarSlice::kSectors / 2))[2])
                                 .alike);
   return least;
+}
+
+/// Energy of what is the same over an arc, in units of chance.
+double energy_of(const AngularConstants& both) {
+  double sum = 0.0;
+  for (std::size_t r = 0; r < both.value.size(); ++r)
+    if (std::isfinite(both.error[r])) sum += both.value[r] * both.value[r] / (both.error[r] * both.error[r]);
+  return sum;
+}
+
+/// From which sector on half rings are other ones: both halves are the most even then.
+std::int64_t best_half_turn(const RingSlices& slices, const Dims& dims, const glm::dvec2& centre) {
+  const PolarSums sums = all_of(sums_of(PolarSlice(dims, centre), slices));
+  std::int64_t best = 0;
+  double most = 0.0;
+  for (std::int64_t first = 0; first < PolarSlice::kSectors / 2; ++first) {
+    double energy = 0.0;
+    for (const PolarSums& arc : arcs_of(sums, first)) energy += energy_of(constants_over_angles(arc)[2]);
+    if (energy > most) most = energy, best = first;
+  }
+  return best;
 }
 
 /// The largest value of a parabola through values at -step, 0 and step.
@@ -126,11 +142,7 @@ double vertex_of(double before, double here, double behind, double step) {
 
 /// Energy of what is the same over all angles.
 double energy_about(const RingSlices& slices, const Dims& dims, const glm::dvec2& centre) {
-  const AngularConstants both = constants_over_angles(all_of(sums_of(PolarSlice(dims, centre), slices)))[2];
-  double sum = 0.0;
-  for (std::size_t r = 0; r < both.value.size(); ++r)
-    if (std::isfinite(both.error[r])) sum += both.value[r] * both.value[r] / (both.error[r] * both.error[r]);
-  return sum;
+  return energy_of(constants_over_angles(all_of(sums_of(PolarSlice(dims, centre), slices)))[2]);
 }
 
 /// To a fifth of a voxel. Where that is the middle, which reconstructions turn about, it is the middle.
@@ -167,11 +179,12 @@ glm::dvec2 best_centre(const RingSlices& slices, const Dims& dims, glm::dvec2 ce
 }
 
 /// What stands out, less what is chance in it, and without what the sharing between two distances took.
-std::vector<double> standing_out(const AngularConstants& both) {
+std::vector<double> standing_out(const AngularConstants& both, double least) {
   std::vector<double> kept(both.value.size());
   for (std::size_t r = 0; r < kept.size(); ++r) {
     const double size = std::abs(both.value[r]);
-    if (size < kRingsErrors * both.error[r] || both.uneven[r] > kRingsMostUneven * size + both.error[r]) continue;
+    if (size < least || size < kRingsErrors * both.error[r] || both.uneven[r] > kRingsMostUneven * size + both.error[r])
+      continue;
     kept[r] = both.value[r] * (1.0 - both.error[r] * both.error[r] / (size * size));
   }
   std::vector<double> rings = kept;
@@ -201,20 +214,22 @@ void take_off(const std::vector<double>& rings, PolarSums& sums) {
 
 /// Takes them off the sums. In rounds: rings beside a ring, of which there may be one at every third distance, move the
 /// median that it is measured from.
-std::vector<double> peel(PolarSums& sums) {
+std::vector<double> peel(PolarSums& sums, double least = 0.0) {
   constexpr int kRounds = 4;
   std::vector<double> rings(static_cast<std::size_t>(sums.radii));
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<double> more = standing_out(constants_over_angles(sums)[2]);
+    const std::vector<double> more = standing_out(constants_over_angles(sums)[2], least);
     take_off(more, sums);
     for (std::size_t r = 0; r < rings.size(); ++r) rings[r] += more[r];
   }
   return rings;
 }
 
-/// What all slices have in common, from some of them.
-Result<std::vector<double>> rings_of_all(SlabSource& scan, SlabSource& half, float level, const PolarSlice& polar,
-                                         Progress& progress) {
+/// What all slices have in common, from some of them: of each arc.
+Result<std::vector<std::vector<double>>> rings_of_all(SlabSource& scan, SlabSource& half, float level,
+                                                      const PolarSlice& polar,
+                                                      const std::optional<std::int64_t>& half_turn,
+                                                      Progress& progress) {
   constexpr std::int64_t kMostSlices = 192;
   const std::int64_t count = std::min(scan.dims().z, kMostSlices);
   PolarSums all(polar.radii());
@@ -225,63 +240,120 @@ Result<std::vector<double>> rings_of_all(SlabSource& scan, SlabSource& half, flo
       DUBSAR_TRY(add_slice(scan, half, i * scan.dims().z / count, level, slices));
     all.add(all_of(sums_of(polar, slices)));
   }
-  return peel(all);
+  std::vector<std::vector<double>> rings;
+  for (PolarSums& arc : arcs_of(all, half_turn)) rings.push_back(peel(arc));
+  return rings;
 }
 
-Result<FoundRings> measure(SlabSource& scan, SlabSource& half, float level, const glm::dvec2& centre,
+/// Of the slices of a block, in one arc: what all have, then what the block has, then each. Counts for the report.
+struct RingCounts {
+  double squares = 0.0, seen = 0.0, rings = 0.0, strongest = 0.0;
+};
+void measure_block(std::vector<PolarSums> sums, std::vector<PolarSums> with_thin, double strong,
+                   const std::vector<double>& of_all, std::int64_t stride, float* to, RingCounts& counts) {
+  const std::int64_t radii = sums.front().radii;
+  for (PolarSums& one : sums) take_off(of_all, one);
+  PolarSums together = all_of(sums);
+  const std::vector<double> of_block = peel(together);
+  const AngularConstants common = constants_over_angles(together)[2];
+  parallel_for(static_cast<std::int64_t>(sums.size()), 1, [&](std::int64_t i) {
+    PolarSums& one = sums[static_cast<std::size_t>(i)];
+    take_off(of_block, one);
+    std::vector<double> rings = peel(one);
+    for (std::size_t r = 0; r < rings.size(); ++r) rings[r] += of_all[r] + of_block[r];
+    PolarSums& thin = with_thin[static_cast<std::size_t>(i)];
+    take_off(rings, thin);
+    const std::vector<double> more = peel(thin, strong);
+    for (std::size_t r = 0; r < rings.size(); ++r)
+      to[i * stride + static_cast<std::int64_t>(r)] = static_cast<float>(rings[r] + more[r]);
+  });
+  for (std::int64_t i = 0; i < static_cast<std::int64_t>(sums.size()); ++i)
+    for (std::int64_t r = 0; r < radii; ++r) {
+      if (!std::isfinite(common.error[static_cast<std::size_t>(r)])) continue;
+      const double ring = to[i * stride + r];
+      counts.squares += ring * ring;
+      counts.rings += ring != 0.0;
+      counts.seen += 1.0;
+      counts.strongest = std::max(counts.strongest, std::abs(ring));
+    }
+}
+
+Result<FoundRings> measure(SlabSource& scan, SlabSource& half, const GreyLevels& levels, const RingsLook& look,
                            Progress& progress) {
+  const auto level = static_cast<float>(levels.air + 0.5 * levels.contrast());
+  const double strong = kRingsStrong * levels.contrast();
   const Dims d = scan.dims();
-  const PolarSlice polar(d, centre);
+  const PolarSlice polar(d, look.centre);
   FoundRings found;
-  found.field = {centre, polar.radii(), std::vector<float>(static_cast<std::size_t>(polar.radii() * d.z))};
-  DUBSAR_ASSIGN(const std::vector<double> of_all, rings_of_all(scan, half, level, polar, progress));
-  double squares = 0.0, seen = 0.0, rings = 0.0;
+  RingField& field = found.field;
+  field.centre = look.centre;
+  field.radii = polar.radii();
+  if (look.half_turn)
+    field.half = HalfTurn{2.0 * std::numbers::pi *
+                          (static_cast<double>(*look.half_turn) / static_cast<double>(PolarSlice::kSectors) - 0.5)};
+  field.of_slice.resize(static_cast<std::size_t>(field.arcs() * field.radii * d.z));
+  DUBSAR_ASSIGN(const auto of_all, rings_of_all(scan, half, level, polar, look.half_turn, progress));
+  RingCounts counts;
   for (std::int64_t z = 0; z < d.z; z += kRingsBlock) {
     if (progress.cancelled()) return cancelled_error();
     RingSlices slices;
+    slices.first = z;
     for (std::int64_t k = z; k < std::min(d.z, z + kRingsBlock); ++k)
       DUBSAR_TRY(add_slice(scan, half, k, level, slices));
-    std::vector<PolarSums> sums = sums_of(polar, slices);
-    for (PolarSums& one : sums) take_off(of_all, one);
-    PolarSums together = all_of(sums);
-    const std::vector<double> of_block = peel(together);
-    const AngularConstants common = constants_over_angles(together)[2];
-    parallel_for(static_cast<std::int64_t>(sums.size()), 1, [&](std::int64_t i) {
-      PolarSums& one = sums[static_cast<std::size_t>(i)];
-      take_off(of_block, one);
-      const std::vector<double> of_one = peel(one);
-      float* const to = found.field.of_slice.data() + (z + i) * polar.radii();
-      for (std::size_t r = 0; r < of_one.size(); ++r) to[r] = static_cast<float>(of_all[r] + of_block[r] + of_one[r]);
-    });
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      for (std::int64_t r = 0; r < polar.radii(); ++r) {
-        if (!std::isfinite(common.error[static_cast<std::size_t>(r)])) continue;
-        const double ring =
-            found.field.of_slice[static_cast<std::size_t>((z + static_cast<std::int64_t>(i)) * polar.radii() + r)];
-        squares += ring * ring;
-        rings += ring != 0.0;
-        seen += 1.0;
-        found.report.strongest = std::max(found.report.strongest, std::abs(ring));
-      }
+    const std::vector<PolarSums> sums = sums_of(polar, slices);
+    DUBSAR_TRY(take_thin_for_rings(half, level, slices));
+    const std::vector<PolarSums> with_thin = sums_of(polar, slices);
+    for (std::int64_t arc = 0; arc < field.arcs(); ++arc) {
+      const auto part = static_cast<std::size_t>(arc);
+      std::vector<PolarSums> of_arc, thin_of_arc;
+      for (const PolarSums& one : sums) of_arc.push_back(std::move(arcs_of(one, look.half_turn)[part]));
+      for (const PolarSums& one : with_thin) thin_of_arc.push_back(std::move(arcs_of(one, look.half_turn)[part]));
+      measure_block(std::move(of_arc), std::move(thin_of_arc), strong, of_all[static_cast<std::size_t>(arc)],
+                    field.arcs() * field.radii, field.of_slice.data() + (z * field.arcs() + arc) * field.radii, counts);
+    }
     progress.advance(static_cast<std::int64_t>(sums.size()) * d.slice());
   }
-  found.report.deviation = std::sqrt(squares / std::max(1.0, seen));
-  found.report.rings = rings / static_cast<double>(d.z);
+  found.report.strongest = counts.strongest;
+  found.report.deviation = std::sqrt(counts.squares / std::max(1.0, counts.seen));
+  found.report.rings = counts.rings / static_cast<double>(d.z);
   return found;
+}
+
+/// Looks about the middle, where a reconstruction turns: scans of half a turn.
+std::optional<RingsLook> look_for_half_rings(const RingSlices& slices, const Dims& dims, const glm::dvec2& middle) {
+  const std::int64_t first = best_half_turn(slices, dims, middle);
+  const Agreement here = agreement_of_slices(slices, dims, middle, first);
+  const double control = agreement_beside(slices, dims, middle, first);
+  const PolarSums sums = all_of(sums_of(PolarSlice(dims, middle), slices));
+  AgreementSums quarters;  // first and second of each half
+  for (const std::int64_t begin : {first, first + PolarSlice::kSectors / 2}) {
+    PolarSums before = sums.half_from(begin).half_from(begin - PolarSlice::kSectors / 4 + PolarSlice::kSectors),
+              behind = sums.half_from(begin).half_from(begin + PolarSlice::kSectors / 4);
+    quarters.add(constants_over_angles(before)[2], constants_over_angles(behind)[2]);
+  }
+  log_debug(
+      "half rings from sector {}: clay and air agree by {:.1f} deviations, {:.2f} alike, quarters {:.2f}; "
+      "elsewhere by {:.1f}",
+      first, here.together, here.alike, quarters.result().alike, control);
+  if (quarters.result().alike < kRingsLeastAlike || here.together < kRingsLeastAgreement ||
+      here.alike < kRingsLeastAlike || control > std::max(kRingsChance, kRingsMostControl * here.together))
+    return std::nullopt;
+  return RingsLook{middle, std::min(here.alike, 1.0), first};
 }
 
 }  // namespace
 
 std::string describe(const RingsReport& rings) {
   return fmt::format(
-      "rings of uneven detector pixels about x {:.1f}, y {:.1f}: {:.1f} % of the contrast, the strongest {:.0f} %; "
+      "{} of uneven detector pixels about x {:.1f}, y {:.1f}: {:.1f} % of the contrast, the strongest {:.0f} %; "
       "taken off",
-      rings.look.centre.x, rings.look.centre.y, 100.0 * rings.deviation, 100.0 * rings.strongest);
+      rings.look.half_turn ? "half rings" : "rings", rings.look.centre.x, rings.look.centre.y, 100.0 * rings.deviation,
+      100.0 * rings.strongest);
 }
 
 std::string describe(const RingsLook& look) {
-  return fmt::format("rings of uneven detector pixels about x {:.1f}, y {:.1f}; they will be taken off", look.centre.x,
-                     look.centre.y);
+  return fmt::format("{} of uneven detector pixels about x {:.1f}, y {:.1f}; they will be taken off",
+                     look.half_turn ? "half rings" : "rings", look.centre.x, look.centre.y);
 }
 
 Result<std::optional<RingsLook>> look_for_rings(SlabSource& scan, SlabSource& half, const GreyLevels& levels,
@@ -296,10 +368,8 @@ Result<std::optional<RingsLook>> look_for_rings(SlabSource& scan, SlabSource& ha
   if (progress.cancelled()) return cancelled_error();
   const glm::dvec2 middle{0.5 * static_cast<double>(d.x - 1), 0.5 * static_cast<double>(d.y - 1)};
   const glm::dvec2 centre = best_centre(slices, d, middle);
-  const Agreement here = agreement_about(slices, d, centre);
-  double control = 0.0;
-  for (const glm::dvec2 way : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
-    control = std::max(control, agreement_about(slices, d, centre + kRingsControl * way).together);
+  const Agreement here = agreement_of_slices(slices, d, centre, std::nullopt);
+  const double control = agreement_beside(slices, d, centre, std::nullopt);
   const double halves = alike_in_halves(slices, d, centre);
   log_debug(
       "rings about {:.2f} {:.2f}: clay and air agree by {:.1f} deviations, {:.2f} alike, halves {:.2f}; elsewhere by "
@@ -307,8 +377,8 @@ Result<std::optional<RingsLook>> look_for_rings(SlabSource& scan, SlabSource& ha
       centre.x, centre.y, here.together, here.alike, halves, control);
   if (halves < kRingsLeastAlike || here.together < kRingsLeastAgreement || here.alike < kRingsLeastAlike ||
       control > std::max(kRingsChance, kRingsMostControl * here.together))
-    return std::nullopt;
-  return RingsLook{finer_centre(slices, d, middle, centre), std::min(here.alike, 1.0)};
+    return halves < kRingsLeastAlike ? look_for_half_rings(slices, d, middle) : std::nullopt;
+  return RingsLook{finer_centre(slices, d, middle, centre), std::min(here.alike, 1.0), std::nullopt};
 }
 
 Result<std::optional<FoundRings>> find_rings(SlabSource& scan, SlabSource& half, const GreyLevels& levels,
@@ -316,8 +386,7 @@ Result<std::optional<FoundRings>> find_rings(SlabSource& scan, SlabSource& half,
   progress.begin("rings", scan.dims().count(), "voxel");
   DUBSAR_ASSIGN(const std::optional<RingsLook> look, look_for_rings(scan, half, levels, progress));
   if (!look) return std::nullopt;
-  const auto level = static_cast<float>(levels.air + 0.5 * levels.contrast());
-  DUBSAR_ASSIGN(FoundRings found, measure(scan, half, level, look->centre, progress));
+  DUBSAR_ASSIGN(FoundRings found, measure(scan, half, levels, *look, progress));
   RingsReport& report = found.report;
   report.look = *look;
   report.deviation /= levels.contrast();

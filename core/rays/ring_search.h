@@ -13,6 +13,7 @@ namespace dubsar {
 struct RingsLook {
   glm::dvec2 centre{0.0};  ///< x and y of the axis, voxels
   double alike = 0.0;      ///< correlation of rings in clay and in air at the same distance: 1 for a scanner's
+  std::optional<std::int64_t> half_turn;  ///< sector (PolarSlice) from which on half rings are other ones
 };
 
 struct RingsReport {
@@ -34,10 +35,10 @@ std::string describe(const RingsLook& look);
 
 /// What is the same over all angles about an axis along z that stands within two voxels of the middle, in clay and in
 /// air alike: at one distance from the axis the object is clay here and air there, a detector pixel adds the same to
-/// both. Nothing where clay and air do not agree, or where they agree about other centres as well; nothing, then, for a
-/// body of revolution about the axis, which has no distance with both; nothing where halves of the turn differ, as in
-/// scans of half a turn, where a pixel makes half a ring. Within a voxel of half the resolution of a
-/// surface nothing is looked at.
+/// both. In scans of half a turn a pixel makes half a ring: where halves of the turn differ, the line between them is
+/// looked for, to a sixteenth of the turn, and they are measured apart. Nothing where clay and air do not agree, or
+/// where they agree about other centres as well; nothing, then, for a body of revolution about the axis, which has no
+/// distance with both. Within a voxel of half the resolution of a surface nothing is looked at.
 ///
 /// `half` is the scan after 2:1 (core/filter/resample.h), `levels` of air and clay. Reads eight slices. Memory: 16
 /// slices. The same for any number of threads. Errors of the sources, kCancelled.
