@@ -22,6 +22,6 @@ int main(int argc, char** argv) {
        add_wedges_verb(program), add_handcopy_verb(program), add_compare_verb(program), add_export_verb(program),
        add_fatcross_verb(program), add_render_verb(program), add_animate_verb(program), add_report_verb(program),
        add_show_verb(program), add_view_verb(program), add_doctor_verb(program), add_displays_verb(program),
-       add_devices_verb(program)},
+       add_devices_verb(program), add_kiosk_verb(program)},
       argc, argv);
 }

@@ -39,6 +39,7 @@ Verb add_phantom_verb(Arguments program);
 Verb add_process_verb(Arguments program);
 Verb add_info_verb(Arguments program);
 Verb add_compare_verb(Arguments program);
+Verb add_kiosk_verb(Arguments program);
 Verb add_wedges_verb(Arguments program);
 Verb add_handcopy_verb(Arguments program);
 Verb add_exa_verb(Arguments program);

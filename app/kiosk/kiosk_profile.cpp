@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/files/atomic_file.h"
+#include "core/base/text/json_fault.h"
+#include "core/base/text/json_places.h"
 #include "core/base/text/json_text.h"
 
 namespace dubsar::app {
@@ -25,23 +27,33 @@ std::filesystem::path in_folder(const std::filesystem::path& folder, const std::
   return text.empty() ? std::filesystem::path() : folder / text;  // an absolute one stays
 }
 
-Result<KioskObject> read_object(const json& object, const std::string& where, const std::filesystem::path& folder) {
+/// What the fields of the thing at `place` complain of, each at its own place.
+void tell(const JsonFields& fields, const std::string& place, std::vector<ProfileFault>& faults) {
+  const std::string_view said = fields.where();
+  for (const JsonFields::Complaint& complaint : fields.complaints())
+    faults.push_back({place + (complaint.member.empty() ? "" : "/" + complaint.member),
+                      fmt::format("{}{}{}", said, said.empty() ? "" : ": ", complaint.sentence)});
+}
+
+KioskObject read_object(const json& object, const std::string& where, const std::string& place,
+                        const std::filesystem::path& folder, std::vector<ProfileFault>& faults) {
   JsonFields fields(object, where);
   fields.only(kObjectMembers);
   KioskObject out;
   out.file = in_folder(folder, fields.text("file", ""));
-  if (out.file.empty()) fields.complain("\"file\" is missing, expected a surface such as tablet.exa");
+  if (out.file.empty()) fields.complain("\"file\" is missing, expected a surface such as tablet.exa", "file");
   const std::string tour = fields.text("tour", "");
   out.toured = tour != "none";
   if (out.toured) out.tour = in_folder(folder, tour);
   out.style = fields.text("style", out.style.c_str());
   out.parts = fields.texts("parts", 8);
   out.title = read_texts(fields, object, "title");
-  DUBSAR_TRY(fields.finish());
+  tell(fields, place, faults);
   return out;
 }
 
-Result<KioskPanel> read_panel(const json& object, const std::string& where) {
+KioskPanel read_panel(const json& object, const std::string& where, const std::string& place,
+                      std::vector<ProfileFault>& faults) {
   JsonFields fields(object, where);
   fields.only(kPanelMembers);
   KioskPanel out;
@@ -50,7 +62,7 @@ Result<KioskPanel> read_panel(const json& object, const std::string& where) {
   out.size = fields.text("size", "");
   if (out.monitor.empty() && out.size.empty())
     fields.complain("neither \"monitor\" nor \"size\" is given: it would stand before the first panel");
-  DUBSAR_TRY(fields.finish());
+  tell(fields, place, faults);
   return out;
 }
 
@@ -74,44 +86,49 @@ Texts read_texts(JsonFields& fields, const json& object, const char* name) {
   const json& value = object.at(name);
   const json by_language = value.is_string() ? json{{"en", value}} : value;
   if (!by_language.is_object() || by_language.size() > kMostTexts)
-    fields.complain(fmt::format("\"{}\" is neither a text nor texts by language", name));
+    fields.complain(fmt::format("\"{}\" is neither a text nor texts by language", name), name);
   else
     for (const auto& [language, text] : by_language.items()) {
       if (text.is_string() && text.get_ref<const std::string&>().size() <= kLongestText)
         out[language] = text.get<std::string>();
       else
-        fields.complain(fmt::format("\"{}\" in {} is no text of at most {} bytes", name, language, kLongestText));
+        fields.complain(fmt::format("\"{}\" in {} is no text of at most {} bytes", name, language, kLongestText),
+                        std::string(name) + "/" + language);
     }
   return out;
 }
 
-Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string_view source,
-                                         const std::filesystem::path& folder) {
-  auto parsed = parse_json(json_text, source);
-  if (!parsed) return fail(ErrorKind::kConfig, "{}", parsed.error().message);
-  const json& object = *parsed;
-  if (const auto version = json_version(object, kProfileFormat, 1, 1, source); !version)
-    return fail(ErrorKind::kConfig, "{}", version.error().message);
-  JsonFields fields(object, std::string(source));
-  fields.only(kMembers);
-  DUBSAR_TRY(fields.finish());
+KioskProfile take_kiosk_profile(const json& object, const std::filesystem::path& folder,
+                                std::vector<ProfileFault>& faults) {
   KioskProfile out;
-  const auto read = [&](const json& item, const std::string& where) { return read_object(item, where, folder); };
-  auto objects = read_list<KioskObject>(object, "objects", 1, kMostObjects, fields.where(), read);
-  auto panels = read_list<KioskPanel>(object, "panels", 0, kMostPanels, fields.where(), read_panel);
-  for (const Error* const wrong : {objects ? nullptr : &objects.error(), panels ? nullptr : &panels.error()})
-    if (wrong != nullptr) return fail(ErrorKind::kConfig, "{}", wrong->message);
-  out.objects = *std::move(objects);
-  out.panels = *std::move(panels);
+  if (const auto version = json_version(object, kProfileFormat, 1, 1, "a kiosk's profile"); !version) {
+    faults.push_back({object.is_object() && object.contains("format") ? "/version" : "", version.error().message});
+    return out;
+  }
+  JsonFields fields(object, {});
+  fields.only(kMembers);
+  if (const auto done = check_list(object, "objects", 1, kMostObjects, ""); !done)
+    fields.complain(fmt::format("\"objects\" is no list of 1 to {} objects", kMostObjects), "objects");
+  else
+    for (const json& item : object.at("objects")) {
+      const std::size_t at = out.objects.size();
+      out.objects.push_back(
+          read_object(item, fmt::format("object {}", at + 1), fmt::format("/objects/{}", at), folder, faults));
+    }
+  for (const json& item : fields.list("panels", kMostPanels)) {
+    const std::size_t at = out.panels.size();
+    out.panels.push_back(read_panel(item, fmt::format("panel {}", at + 1), fmt::format("/panels/{}", at), faults));
+  }
   if (fields.has("languages")) out.languages = fields.texts("languages", 16);
-  if (out.languages.empty()) fields.complain("\"languages\" names none");
+  if (out.languages.empty()) fields.complain("\"languages\" names none, expected such as [\"en\"]", "languages");
   out.inputs = fields.texts("inputs", 16);
-  for (const std::string& hours : fields.texts("quiet", 16)) {
-    const auto quiet = parse_quiet_hours(hours);
-    if (quiet)
-      out.quiet.push_back(*quiet);
+  const std::vector<std::string> quiet = fields.texts("quiet", 16);
+  for (std::size_t i = 0; i < quiet.size(); ++i) {
+    const auto hours = parse_quiet_hours(quiet[i]);
+    if (hours)
+      out.quiet.push_back(*hours);
     else
-      fields.complain(quiet.error().message);
+      fields.complain(hours.error().message, fmt::format("quiet/{}", i));
   }
   out.words = in_folder(folder, fields.text("words", ""));
   out.display = fields.text("display", out.display.c_str());
@@ -124,11 +141,22 @@ Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string
   out.pin = fields.text("pin", "");
   out.key_file = in_folder(folder, fields.text("key_file", ""));
   out.journal = in_folder(folder, fields.text("journal", ""));
-  if (!out.pin.empty() && !is_pin(out.pin)) fields.complain("\"pin\" is no text of 4 to 12 digits");
+  if (!out.pin.empty() && !is_pin(out.pin)) fields.complain("\"pin\" is no text of 4 to 12 digits", "pin");
   if (out.pin.empty() && out.key_file.empty())
     fields.complain("neither \"pin\" nor \"key_file\" is given: nobody could end it");
-  DUBSAR_TRY(fields.finish());
+  tell(fields, "", faults);
   return out;
+}
+
+Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string_view source,
+                                         const std::filesystem::path& folder) {
+  const auto parsed = parse_json(json_text, source);
+  if (!parsed) return fail(ErrorKind::kConfig, "{}", parsed.error().message);
+  std::vector<ProfileFault> faults;
+  KioskProfile out = take_kiosk_profile(*parsed, folder, faults);
+  if (faults.empty()) return out;
+  return fail(ErrorKind::kConfig, "{}, {}: {}", source,
+              json_place(json_text, JsonPlaces(json_text).at(faults.front().place)), faults.front().what);
 }
 
 Result<KioskProfile> read_kiosk_profile(const std::filesystem::path& path) {

@@ -53,8 +53,17 @@ struct KioskProfile {
   std::filesystem::path journal{};   ///< folder; empty: none
 };
 
-/// Relative paths count from `folder`, that of the profile. kConfig in one sentence for what is unknown, missing or out
-/// of range; whether files exist is not looked at.
+/// Something wrong in a profile: at a place as of JsonPlaces, in one sentence.
+struct ProfileFault {
+  std::string place, what;
+};
+/// What can be read of a profile; everything wrong with it is added to `faults`. Relative paths count from `folder`,
+/// that of the profile.
+KioskProfile take_kiosk_profile(const nlohmann::json& object, const std::filesystem::path& folder,
+                                std::vector<ProfileFault>& faults);
+
+/// The same of a text, which has nothing wrong: kConfig in one sentence, with line and column, for what is unknown,
+/// missing or out of range; whether files exist is not looked at.
 Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string_view source,
                                          const std::filesystem::path& folder);
 

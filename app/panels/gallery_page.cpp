@@ -164,7 +164,7 @@ void draw_gallery(const GalleryPicture& picture, float width, float height, floa
     draw_lesson(lesson_pose(*picture.lesson, picture.lesson_s), x, y, radius);
   }
   if (!picture.title.empty())
-    draw_words(picture.title, 1.1f * size, width, 0.03f * height + 2.0f * size, picture.right_to_left);
+    draw_words(picture.title, static_cast<float>(kTitleLarger) * size, width, 0.03f * height + 2.0f * size, picture.right_to_left);
   draw_steps(picture, width, 0.03f * height + 2.5f * size, 0.16f * size);
   for (const SignPicture& sign : picture.signs) draw_sign(sign, width, height);
   if (!picture.menu.empty()) draw_menu(picture.menu, std::max(size * 0.6f, 14.0f), width, height);

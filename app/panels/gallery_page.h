@@ -8,6 +8,9 @@
 
 namespace dubsar::app {
 
+/// Lines that stand beside the object, and how much larger a title is set than a sentence.
+inline constexpr double kSentenceLines = 3.0, kTitleLines = 2.0, kTitleLarger = 1.1;
+
 /// Size of the font whose capitals are `letter_mm` high; small panels have smaller ones, so that the object keeps its
 /// place: `height` is the panel's. All in one unit, such as pixels, of which `per_mm` are a millimetre of the panel.
 double letters_size(double letter_mm, double height, double per_mm) noexcept;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <optional>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -18,11 +17,6 @@ namespace {
 constexpr std::size_t kMostShown = 24;  // bytes of the file that a sentence repeats
 constexpr int kMostLevels = 64;         // the parser is asked for fewer
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-struct Fault {
-  std::size_t at = 0;
-  std::string what;
-};
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -47,13 +41,15 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-std::optional<Fault> encoding_fault(std::string_view text) {
+std::optional<JsonFault> encoding_fault(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t length = utf8_length(text.substr(at));
     if (length == 0)
-      return Fault{at, fmt::format("the byte {:02X} is not UTF-8; save the file as UTF-8 (it may be Latin-1 or "
+      return JsonFault{at,
+                       fmt::format("the byte {:02X} is not UTF-8; save the file as UTF-8 (it may be Latin-1 or "
                                    "Windows-1252 now)",
-                                   static_cast<unsigned char>(text[at]))};
+                                   static_cast<unsigned char>(text[at])),
+                       JsonSlip::kBytes};
     at += length;
   }
   return std::nullopt;
@@ -97,21 +93,21 @@ class Walk {
  public:
   explicit Walk(std::string_view text) : text_(text) {}
 
-  std::optional<Fault> first_fault() {
+  std::optional<JsonFault> first_fault() {
     if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
     skip();
-    if (!fault_ && at_ == text_.size()) return Fault{0, {}};
+    if (!fault_ && at_ == text_.size()) return JsonFault{0, {}};
     value(0);
     skip();
     if (!fault_ && at_ < text_.size())
-      wrong(at_, fmt::format("{} found after the end of the text, expected nothing more", shown(at_)));
+      wrong(at_, fmt::format("{} found after the end of the text, expected nothing more", shown(at_)), JsonSlip::kTail);
     return fault_;
   }
 
  private:
   char here() const { return at_ < text_.size() ? text_[at_] : '\0'; }
-  bool wrong(std::size_t at, std::string what) {
-    if (!fault_) fault_ = Fault{at, std::move(what)};
+  bool wrong(std::size_t at, std::string what, JsonSlip slip = JsonSlip::kOther) {
+    if (!fault_) fault_ = JsonFault{at, std::move(what), slip};
     return false;
   }
   /// The word, name or sign that stands at `at`, for a sentence.
@@ -132,7 +128,8 @@ class Walk {
 
   bool skip() {
     while (at_ < text_.size() && is_space(text_[at_])) ++at_;
-    if (here() == '/' || here() == '#') return wrong(at_, "a comment found; JSON has none, take it out");
+    if (here() == '/' || here() == '#')
+      return wrong(at_, "a comment found; JSON has none, take it out", JsonSlip::kComment);
     return true;
   }
 
@@ -157,7 +154,7 @@ class Walk {
   }
 
   bool odd_quotes(std::size_t at, std::string_view quote) {
-    return wrong(at, fmt::format("the quote {} found, expected the straight \"", quote));
+    return wrong(at, fmt::format("the quote {} found, expected the straight \"", quote), JsonSlip::kQuote);
   }
 
   bool members(int level) {
@@ -166,7 +163,7 @@ class Walk {
     for (bool first = true;; first = false) {
       if (!skip()) return false;
       if (here() == '}') {
-        if (!first) return wrong(comma, "a comma too many before }");
+        if (!first) return wrong(comma, "a comma too many before }", JsonSlip::kCommaTooMany);
         ++at_;
         return true;
       }
@@ -174,8 +171,10 @@ class Walk {
       const std::size_t named = name_;
       if (!skip()) return false;
       if (here() != ':')
-        return wrong(at_, here() == '=' ? std::string("= found, expected a colon")
-                                        : fmt::format("a colon is missing after {}", shown(named)));
+        return wrong(at_,
+                     here() == '=' ? std::string("= found, expected a colon")
+                                   : fmt::format("a colon is missing after {}", shown(named)),
+                     here() == '=' ? JsonSlip::kEquals : JsonSlip::kColonMissing);
       ++at_;
       if (!skip()) return false;
       if (here() == ',' || here() == '}') return wrong(at_, fmt::format("the value of {} is missing", shown(named)));
@@ -205,8 +204,8 @@ class Walk {
       if (!separator(opened, ']')) return false;
       const std::size_t comma = at_ - 1;
       if (!skip()) return false;
-      if (here() == ']') return wrong(comma, "a comma too many before ]");
-      if (here() == ',') return wrong(at_, "a comma too many");
+      if (here() == ']') return wrong(comma, "a comma too many before ]", JsonSlip::kCommaTooMany);
+      if (here() == ',') return wrong(at_, "a comma too many", JsonSlip::kCommaTooMany);
     }
   }
 
@@ -222,15 +221,17 @@ class Walk {
       return wrong(at_,
                    fmt::format("{} found, expected {}, as {} opened at {}", c, close, text_[opened], place(opened)));
     if (c == ':') return wrong(at_, "a colon found, expected a comma");
-    if (c == ';') return wrong(at_, "; found, expected a comma");
+    if (c == ';') return wrong(at_, "; found, expected a comma", JsonSlip::kSemicolon);
     if (c == '"' || c == '{' || c == '[' || c == '-' || is_word(c) || !odd_quote(text_.substr(at_)).empty())
-      return wrong(at_, fmt::format("a comma is missing before {}", shown(at_)));
+      return wrong(at_, fmt::format("a comma is missing before {}", shown(at_)), JsonSlip::kCommaMissing);
     return wrong(at_, fmt::format("{} found, expected a comma or {}", shown(at_), close));
   }
 
   bool unclosed(std::size_t opened) {
-    return wrong(at_, fmt::format("the text ends before the {} that closes the {} of {}",
-                                  text_[opened] == '{' ? '}' : ']', text_[opened], place(opened)));
+    return wrong(at_,
+                 fmt::format("the text ends before the {} that closes the {} of {}", text_[opened] == '{' ? '}' : ']',
+                             text_[opened], place(opened)),
+                 JsonSlip::kOpenEnd);
   }
 
   /// Of a member; `comma`: where the comma before it stands, 0: none.
@@ -238,7 +239,7 @@ class Walk {
     name_ = at_;
     if (here() == '"') return string();
     if (at_ >= text_.size()) return false;
-    if (comma > 0 && here() == ',') return wrong(at_, "a comma too many");
+    if (comma > 0 && here() == ',') return wrong(at_, "a comma too many", JsonSlip::kCommaTooMany);
     if (comma > 0 && comma + 1 == at_ && is_digit(here()) && is_digit(text_[comma - 1])) {
       std::size_t begin = comma, end = at_;
       while (begin > 0 && (is_digit(text_[begin - 1]) || text_[begin - 1] == '-')) --begin;
@@ -246,11 +247,13 @@ class Walk {
       const std::string found(text_.substr(begin, std::min(end - begin, kMostShown)));
       std::string wanted = found;
       std::replace(wanted.begin(), wanted.end(), ',', '.');
-      return wrong(begin, fmt::format("{} found, expected a decimal point: {}", found, wanted));
+      return wrong(begin, fmt::format("{} found, expected a decimal point: {}", found, wanted),
+                   JsonSlip::kDecimalComma);
     }
     if (const auto quote = odd_quote(text_.substr(at_)); !quote.empty()) return odd_quotes(at_, quote);
     if (is_word(here()))
-      return wrong(at_, fmt::format("{} found, expected a name in quotes: \"{}\"", shown(at_), shown(at_)));
+      return wrong(at_, fmt::format("{} found, expected a name in quotes: \"{}\"", shown(at_), shown(at_)),
+                   JsonSlip::kBareName);
     return wrong(at_, fmt::format("{} found, expected a name in quotes", shown(at_)));
   }
 
@@ -267,12 +270,15 @@ class Walk {
         for (std::size_t i = 1; i < line.size(); ++i)
           for (const std::string_view quote : std::span(kOddQuotes).first(kDoubleQuotes))
             if (line.substr(i).starts_with(quote)) return odd_quotes(opened + i, quote);
-        return wrong(opened, fmt::format("the closing quote of {} is missing on its line", shown(opened)));
+        return wrong(opened, fmt::format("the closing quote of {} is missing on its line", shown(opened)),
+                     JsonSlip::kOpenText);
       }
       if (static_cast<unsigned char>(c) < 0x20)
-        return wrong(at_, fmt::format("a control character ({}) found in a text, expected {}",
-                                      c == '\t' ? "a tab" : fmt::format("code {}", static_cast<int>(c)),
-                                      c == '\t' ? "\\t" : "none"));
+        return wrong(
+            at_,
+            fmt::format("a control character ({}) found in a text, expected {}",
+                        c == '\t' ? "a tab" : fmt::format("code {}", static_cast<int>(c)), c == '\t' ? "\\t" : "none"),
+            JsonSlip::kControl);
       if (c == '\\' && !escape()) return false;
     }
     return wrong(opened, fmt::format("the closing quote of {} is missing", shown(opened)));
@@ -292,8 +298,10 @@ class Walk {
     } else if (std::string_view("\"\\/bfnrt").find(c) != std::string_view::npos && c != '\0') {
       return true;
     }
-    return wrong(begin, fmt::format("a single \\ before {} found in a text, expected \\\\ (in paths, / will do)",
-                                    at_ < text_.size() ? shown(at_).substr(0, 1) : "the end"));
+    return wrong(begin,
+                 fmt::format("a single \\ before {} found in a text, expected \\\\ (in paths, / will do)",
+                             at_ < text_.size() ? shown(at_).substr(0, 1) : "the end"),
+                 JsonSlip::kBackslash);
   }
 
   bool number() {
@@ -321,8 +329,10 @@ class Walk {
       good = digits();
     }
     if (!good || i != all.size())
-      return wrong(begin, fmt::format("{} is no number of JSON, expected one such as 0.5, -3 or 1e-3",
-                                      plain_text(all.substr(0, kMostShown))));
+      return wrong(begin,
+                   fmt::format("{} is no number of JSON, expected one such as 0.5, -3 or 1e-3",
+                               plain_text(all.substr(0, kMostShown))),
+                   JsonSlip::kNumber);
     if (double value = 0.0; std::from_chars(all.data(), all.data() + all.size(), value).ec != std::errc() &&
                             all.find("e-") == std::string_view::npos && all.find("E-") == std::string_view::npos)
       return wrong(begin, fmt::format("the number {} is too large", all.substr(0, kMostShown)));
@@ -335,7 +345,8 @@ class Walk {
     while (end < text_.size() && is_word(text_[end])) ++end;
     const std::string_view all = text_.substr(at_, end - at_);
     if (all != "true" && all != "false" && all != "null")
-      return wrong(at_, fmt::format("{} found, expected true, false, null, a number or a text in quotes", shown(at_)));
+      return wrong(at_, fmt::format("{} found, expected true, false, null, a number or a text in quotes", shown(at_)),
+                   JsonSlip::kWord);
     at_ = end;
     return true;
   }
@@ -343,10 +354,12 @@ class Walk {
   std::string_view text_;
   std::size_t at_ = 0;
   std::size_t name_ = 0;  ///< where the last name of a member begins
-  std::optional<Fault> fault_;
+  std::optional<JsonFault> fault_;
 };
 
-std::string at_place(std::string_view text, std::size_t at) {
+}  // namespace
+
+std::string json_place(std::string_view text, std::size_t at) {
   at = std::min(at, text.size());
   Place place = place_of(text, at);
   if (place.begin == 0 && text.starts_with(kByteOrderMark)) place.begin = std::min(at, kByteOrderMark.size());
@@ -355,15 +368,20 @@ std::string at_place(std::string_view text, std::size_t at) {
   return fmt::format("line {}, column {}", place.line, column + 1);
 }
 
-}  // namespace
+std::optional<JsonFault> first_json_fault(std::string_view text) {
+  if (is_utf16(text)) return JsonFault{0, "the text is UTF-16, expected UTF-8; save the file as UTF-8"};
+  if (auto fault = encoding_fault(text)) return fault;
+  auto fault = Walk(text).first_fault();
+  if (fault && fault->what.empty()) fault->what = "the file is empty, expected JSON";
+  return fault;
+}
 
 std::string json_fault(std::string_view text, std::size_t refused_at) {
-  if (is_utf16(text)) return "the text is UTF-16, expected UTF-8; save the file as UTF-8";
-  auto fault = encoding_fault(text);
-  if (!fault) fault = Walk(text).first_fault();
-  if (fault && fault->what.empty()) return "the file is empty, expected JSON";
-  if (!fault) fault = Fault{refused_at > 0 ? refused_at - 1 : 0, "no JSON that can be read"};
-  return fmt::format("{}: {}", at_place(text, fault->at), fault->what);
+  auto fault = first_json_fault(text);
+  if (fault && fault->at == 0 && (fault->what.starts_with("the text is") || fault->what.starts_with("the file is")))
+    return fault->what;
+  if (!fault) fault = JsonFault{refused_at > 0 ? refused_at - 1 : 0, "no JSON that can be read"};
+  return fmt::format("{}: {}", json_place(text, fault->at), fault->what);
 }
 
 }  // namespace dubsar

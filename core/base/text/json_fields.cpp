@@ -14,24 +14,24 @@ const json* JsonFields::find(const char* name) const {
   return value.is_object() && value.contains("value") ? &value.at("value") : &value;
 }
 
-void JsonFields::complain(std::string sentence) {
-  if (complaint_.empty()) complaint_ = where_ + ": " + std::move(sentence);
+void JsonFields::complain(std::string sentence, std::string_view member) {
+  complaints_.push_back({std::string(member), std::move(sentence)});
 }
 
 double JsonFields::number(const char* name, double low, double high, const double* fallback) {
   const json* const value = find(name);
   if (value == nullptr) {
     if (fallback != nullptr) return *fallback;
-    complain(fmt::format("{} is missing, expected a number of {} to {}", name, low, high));
+    complain(fmt::format("{} is missing, expected a number of {} to {}", name, low, high), name);
     return low;
   }
   if (!value->is_number()) {
-    complain(fmt::format("{} is {}, expected a number of {} to {}", name, value->type_name(), low, high));
+    complain(fmt::format("{} is {}, expected a number of {} to {}", name, value->type_name(), low, high), name);
     return low;
   }
   const double found = value->get<double>();
   if (!std::isfinite(found) || found < low || found > high) {
-    complain(fmt::format("{} is {}, expected {} to {}", name, found, low, high));
+    complain(fmt::format("{} is {}, expected {} to {}", name, found, low, high), name);
     return low;
   }
   return found;
@@ -40,7 +40,7 @@ double JsonFields::number(const char* name, double low, double high, const doubl
 int JsonFields::integer(const char* name, int low, int high, const int* fallback) {
   const double as_double = fallback != nullptr ? *fallback : 0.0;
   const double found = number(name, low, high, fallback != nullptr ? &as_double : nullptr);
-  if (found != std::floor(found)) complain(fmt::format("{} is {}, expected a whole number", name, found));
+  if (found != std::floor(found)) complain(fmt::format("{} is {}, expected a whole number", name, found), name);
   return static_cast<int>(found);
 }
 
@@ -49,7 +49,7 @@ bool JsonFields::flag(const char* name, bool fallback) {
   if (value == nullptr) return fallback;
   if (value->is_boolean()) return value->get<bool>();
   if (value->is_number()) return value->get<double>() >= 0.5;
-  complain(fmt::format("{} is {}, expected true, false, 0 or 1", name, value->type_name()));
+  complain(fmt::format("{} is {}, expected true, false, 0 or 1", name, value->type_name()), name);
   return fallback;
 }
 
@@ -57,12 +57,12 @@ std::string JsonFields::text(const char* name, const char* fallback) {
   const json* const value = find(name);
   if (value == nullptr) {
     if (fallback != nullptr) return fallback;
-    complain(fmt::format("{} is missing, expected a text", name));
+    complain(fmt::format("{} is missing, expected a text", name), name);
     return {};
   }
   if (value->is_string()) return value->get<std::string>();
   if (value->is_number()) return value->dump();
-  complain(fmt::format("{} is {}, expected a text", name, value->type_name()));
+  complain(fmt::format("{} is {}, expected a text", name, value->type_name()), name);
   return {};
 }
 
@@ -71,7 +71,7 @@ const json& JsonFields::list(const char* name, std::size_t most) {
   if (!has(name)) return kEmpty;
   const json& value = object_->at(name);
   if (value.is_array() && value.size() <= most) return value;
-  complain(fmt::format("{} is not a list of at most {} things", name, most));
+  complain(fmt::format("{} is not a list of at most {} things", name, most), name);
   return kEmpty;
 }
 
@@ -81,7 +81,7 @@ std::vector<std::string> JsonFields::texts(const char* name, std::size_t most) {
     if (item.is_string() && !item.get_ref<const std::string&>().empty())
       out.push_back(item.get<std::string>());
     else
-      complain(fmt::format("\"{}\" holds something that is no text", name));
+      complain(fmt::format("\"{}\" holds something that is no text", name), name);
   }
   return out;
 }
@@ -90,7 +90,7 @@ void JsonFields::only(std::span<const std::string_view> known) {
   if (!object_->is_object()) return complain(fmt::format("found {}, expected an object", object_->type_name()));
   for (const auto& [name, value] : object_->items())
     if (std::find(known.begin(), known.end(), std::string_view(name)) == known.end())
-      complain(fmt::format("\"{}\" is unknown, expected one of: {}", name, fmt::join(known, ", ")));
+      complain(fmt::format("\"{}\" is unknown, expected one of: {}", name, fmt::join(known, ", ")), name);
 }
 
 Result<void> check_members(const json& object, std::span<const std::string_view> known, std::string where,
@@ -110,7 +110,7 @@ Result<void> check_list(const json& object, const char* name, std::size_t least,
 }
 
 Result<void> JsonFields::finish(ErrorKind kind) const {
-  if (!complaint_.empty()) return fail(kind, "{}", complaint_);
+  if (!complaints_.empty()) return fail(kind, "{}: {}", where_, complaints_.front().sentence);
   return {};
 }
 

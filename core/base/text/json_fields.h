@@ -1,5 +1,5 @@
 #pragma once
-// Reads fields of a JSON object with their ranges; the first thing wrong becomes one sentence.
+// Reads fields of a JSON object with their ranges; each thing wrong becomes one sentence.
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -35,14 +35,20 @@ class JsonFields {
 
   bool has(const char* name) const { return object_->is_object() && object_->contains(name); }
   const std::string& where() const noexcept { return where_; }
-  void complain(std::string sentence);
+  /// `member` is what it is about, or "member/inner" of what it holds.
+  void complain(std::string sentence, std::string_view member = {});
+  struct Complaint {
+    std::string member, sentence;
+  };
+  const std::vector<Complaint>& complaints() const noexcept { return complaints_; }
   /// The first complaint, or nothing.
   Result<void> finish(ErrorKind kind = ErrorKind::kConfig) const;
 
  private:
   const nlohmann::json* find(const char* name) const;
   const nlohmann::json* object_;
-  std::string where_, complaint_;
+  std::string where_;
+  std::vector<Complaint> complaints_;
 };
 
 /// JsonFields::only() alone, with errors of this kind.

@@ -51,7 +51,7 @@ TEST(KioskProfile, RefusesWhatItDoesNotUnderstandInOneSentence) {
       {base + R"(, "languages": []})", "languages"},
       {base + R"(, "inputs": [3]})", "inputs"},
       {base + R"(, "panels": [{"display": "mono"}]})", "stand before the first panel"},
-      {base + R"(, "panels": [{"monitor": "A", "dsplay": "mono"}]})", "panels[0]: \"dsplay\" is unknown"},
+      {base + R"(, "panels": [{"monitor": "A", "dsplay": "mono"}]})", "panel 1: \"dsplay\" is unknown"},
       {R"({"format": "dubsar kiosk", "version": 1, "objects": [{"file": "a.exa"}], "pin": "12"})", "4 to 12 digits"},
   }};
   for (const auto& [text, said] : wrong) {
