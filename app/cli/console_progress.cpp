@@ -55,7 +55,6 @@ std::string stage_in_words(std::string_view stage) {
                                           {"encode signs", "writing"},
                                           {"encode offsets", "writing"},
                                           {"write exa", "writing"},
-                                          {"untangle", "mending patches"},
                                           {"decode signs", "reading"},
                                           {"decode offsets", "reading"},
                                           {"render", "drawing"},

@@ -23,6 +23,8 @@
 namespace dubsar::app {
 namespace {
 
+constexpr const char* kContactLabels = "labels";
+
 /// Steps that are left out.
 struct Without {
   bool resample = false, holes = false, contact = false, ao = false, cap = false;
@@ -49,7 +51,7 @@ struct ProcessRequest {
   PipelineOptions pipeline;
   double threshold = 0.0, sharpen = 1.0;
   LightRequest light;
-  ContactMesh contact = ContactMesh::kLabels;  ///< how parts are closed where they touch
+  std::string contact = kContactLabels;  ///< how parts are closed where they touch
   Without without;
   Room room;
 };
@@ -105,10 +107,11 @@ void add_surface_options(Arguments command, ProcessRequest& options) {
       "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
   group.value("--concavity", p.segment.concavity, "k_min per grid step below which --segment concavity cuts");
   group.flag("--no-fill-holes", options.without.holes, "leave the holes that segmentation cuts");
-  group.flag("--no-contact", options.without.contact, "leave smooth patches where tablet and envelope touch");
-  group.choice<ContactMesh>("--contact", options.contact, choices_of(kContactMeshes),
-                            "how parts are closed where they touch: labels (default), one mesh of all parts that "
-                            "crosses itself nowhere, or patches between the surfaces");
+  group.flag("--no-contact", options.without.contact, "close tablet and envelope smoothly where they touch");
+  group
+      .value("--contact", options.contact,
+             "how parts are closed where they touch: labels, one mesh of all parts that crosses itself nowhere")
+      .one_of({kContactLabels});
   group.flag("--no-ao", options.without.ao, "skip ambient occlusion");
   group.choice<OcclusionEngine>("--ao-by", options.light.engine, choices_of(kOcclusionEngines),
                                 "what rays of ambient occlusion meet: march (default), distances on the grid, or "
@@ -179,7 +182,6 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
   }
   if (!options.room.scratch.empty()) p.import.budget.scratch_folder = options.room.scratch;
   if (options.without.resample) p.detail = Detail::kScan;
-  p.contact = options.contact;
   if (options.without.contact) p.contact.reset();
   p.sample.closed = !options.without.cap;
   p.fill_holes = !options.without.holes;

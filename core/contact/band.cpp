@@ -11,22 +11,18 @@
 #include "core/contact/nearest_samples.h"
 
 namespace dubsar {
-namespace {
-
-bool between(const SurfaceModel& model, const FillPatch& patch) {
+bool is_contact_patch(const SurfaceModel& model, const FillPatch& patch) {
   if (patch.reverse_partition == PartitionTable::kNone) return false;
   const auto is_tablet = [&](PartitionId id) { return model.partitions[id].kind == PartitionKind::kTablet; };
   return is_tablet(patch.partition) != is_tablet(patch.reverse_partition);
 }
-
-}  // namespace
 
 std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing) {
   std::vector<PatchPoint> points;
   const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
   std::vector<glm::vec3> normals(dual, glm::vec3(0.0f)), added;
   for (const FillPatch& patch : model.patches) {
-    if (!between(model, patch)) continue;
+    if (!is_contact_patch(model, patch)) continue;
     const float sense = model.partitions[patch.partition].kind == PartitionKind::kTablet ? 1.0f : -1.0f;
     added.assign(patch.extra_positions.size(), glm::vec3(0.0f));
     const auto position = [&](std::uint32_t v) {

@@ -32,8 +32,10 @@ struct PatchPoint {
   bool at_rim = false;     ///< nearer to where it begins at the surface than to its next vertex
 };
 
-/// Points of the patches whose `partition` is the tablet's and whose reverse is the envelope's, or the other way round,
-/// at most `spacing` grid steps apart.
+/// Is its `partition` the tablet's and its reverse the envelope's, or the other way round?
+bool is_contact_patch(const SurfaceModel& model, const FillPatch& patch);
+
+/// Points of such patches, at most `spacing` grid steps apart.
 std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing);
 
 /// Middle of the box around all samples. Statistics over pieces of the contact count the pieces from here: they are the

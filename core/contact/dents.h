@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/contact/dips.h"
 #include "core/contact/interface_mesh.h"
 #include "core/contact/interface_rings.h"
 #include "core/contact/rules.h"

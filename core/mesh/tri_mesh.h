@@ -16,14 +16,6 @@ namespace dubsar {
 
 using Triangle = std::array<std::uint32_t, 3>;  ///< counter-clockwise seen from the air
 
-/// Halves a triangle at a vertex on its edge between `a` and `b`: it keeps the half at b, the other is returned.
-inline Triangle halve(Triangle& triangle, std::uint32_t a, std::uint32_t b, std::uint32_t middle) {
-  Triangle other = triangle;
-  std::replace(triangle.begin(), triangle.end(), a, middle);
-  std::replace(other.begin(), other.end(), b, middle);
-  return other;
-}
-
 /// What may be known of the vertices of a surface besides where they are: each array is empty (not known) or has one
 /// entry per vertex. vertex_attributes.h lists the members.
 struct VertexAttributes {

@@ -18,12 +18,10 @@ constexpr double kUnevenClay = 2.0;
 /// Membranes across the cracks of the envelope, between its outside and its inside, which close each alone: patches
 /// behind the contact.
 Result<void> lay_membranes(SurfaceModel& model, Progress& progress) {
-  const bool embedded = model.mesh.embedded;
   HoleOptions beside;
   beside.keep_patches = true;
   beside.measure = false;
   DUBSAR_TRY(fill_holes(model, beside, progress));
-  model.mesh.embedded = embedded;
   if (model.patches.size() == 1) return {};
   std::vector<FillPatch> membranes(std::make_move_iterator(model.patches.begin() + 1),
                                    std::make_move_iterator(model.patches.end()));
@@ -34,14 +32,10 @@ Result<void> lay_membranes(SurfaceModel& model, Progress& progress) {
   return measure_partitions(model);
 }
 
-}  // namespace
-
-Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const SettleOptions& settling, ImportedGrid& imported,
-                          StageRun run) {
-  TracedModel traced{std::move(model), {}};
-  run.clock.start("contact", "point");
+Result<ContactReport> traced_in_scan(SurfaceModel& model, ContactRules rules, ImportedGrid& imported,
+                                     Progress& progress) {
   ContactOptions options;
-  options.mesh = mesh;
+  options.rules = rules;
   if (imported.facts.blur) options.blur_variance = static_cast<float>(imported.facts.blur->variance);
   options.halve_first = !imported.detail.resample();
   if (const auto& rays = imported.facts.rays; rays && rays->straightened)
@@ -50,21 +44,31 @@ Result<TracedModel> trace(SurfaceModel model, ContactMesh mesh, const SettleOpti
   SlabSource& density = imported.straightened        ? static_cast<SlabSource&>(*imported.straightened)
                         : imported.detail.resample() ? static_cast<SlabSource&>(halved)
                                                      : imported.unbent();
-  DUBSAR_ASSIGN(traced.contact, trace_contact(traced.model, density, options, run.progress));
-  if (traced.contact.labelled) {
+  return trace_contact(model, density, options, progress);
+}
+
+}  // namespace
+
+Result<ClosedModel> close_contact(SurfaceModel model, const ClosingOptions& options, ImportedGrid& imported,
+                                  StageRun run) {
+  ClosedModel closed{std::move(model), {}};
+  ContactReport& contact = closed.contact;
+  run.clock.start("contact", "point");
+  DUBSAR_ASSIGN(contact, options.smooth ? follow_patches(closed.model, run.progress)
+                                        : traced_in_scan(closed.model, options.rules, imported, run.progress));
+  if (options.smooth) contact.why = *options.smooth;
+  if (contact.labelled) {
     DUBSAR_ASSIGN(const LabelledSettling settled,
-                  settle_labelled(traced.model, std::move(*traced.contact.labelled), settling.curvature,
-                                  settling.exact_normals, run.progress));
-    traced.contact.labelled.reset();
-    DUBSAR_TRY(lay_membranes(traced.model, run.progress));
+                  settle_labelled(closed.model, std::move(*contact.labelled), options.settle.curvature,
+                                  options.settle.exact_normals, run.progress));
+    contact.labelled.reset();
+    DUBSAR_TRY(lay_membranes(closed.model, run.progress));
     log_debug("contact: {} vertices escape, polygons touched at {} cells, and do at {}", settled.escaped,
               settled.touching, settled.left);
-    traced.contact.patches.crossings = settled.left;
-  } else if (traced.contact.traced) {
-    settle_patches(traced.model.patches, traced.model.mesh.vertex_count());
+    contact.touching = settled.left;
   }
-  run.clock.finish(traced.contact.points);
-  return traced;
+  run.clock.finish(contact.points);
+  return closed;
 }
 
 }  // namespace dubsar

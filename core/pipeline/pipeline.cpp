@@ -29,14 +29,6 @@ SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, Ve
   return model;
 }
 
-/// Patches are kept from crossing a surface whose vertices may leave their cells (untangle.h); of one whose vertices do
-/// not they cross more, so that only what gets none, or labels, is cut to cross nowhere.
-bool may_be_patched(const PipelineOptions& options) {
-  return options.fill_holes &&
-         (options.segment.method == SegmentMethod::kConcavity ||
-          (options.segment.method == SegmentMethod::kNested && options.contact != ContactMesh::kLabels));
-}
-
 /// What is known of voxels when they are not needed any more.
 struct FoundSurface {
   SampledSurface sampled;
@@ -109,7 +101,6 @@ struct Run {
   SettledModel settled;
   SeparatedModel separated;  ///< its model is the one that later stages change
   std::optional<ContactReport> contact;
-  std::optional<UntangleReport> patches;
   CheckedProduct product;
 
   Result<void> import(std::unique_ptr<ImportedVolume> scan) {
@@ -137,29 +128,28 @@ struct Run {
     return keep(settled, settle(std::move(model), settling, options.exa_profile, run));
   }
 
-  /// How much of the surface is contact is known now. Where there is no room to trace it, smooth patches stay.
-  Result<void> trace_or_untangle() {
+  /// How much of the surface is contact is known now. Where there is no room to trace it, it stays as smooth as
+  /// patches.
+  Result<void> close_contact() {
     SurfaceModel& model = separated.model;
-    if (options.contact && separated.segment.nested && !separated.segment.enclosure_refused) {
-      plan.run.patches = static_cast<double>(patch_triangles(model));
-      const Result<void> fits = check_fits(plan.run, plan.room, RunStage::kContact);
-      if (fits) {
-        SettleOptions settling = options.settle;
-        settling.curvature = options.curvature;
-        DUBSAR_ASSIGN(TracedModel traced, trace(std::move(model), *options.contact, settling, imported, run));
-        model = std::move(traced.model);
-        contact = std::move(traced.contact);
+    if (separated.segment.nested && !separated.segment.enclosure_refused && options.exa_profile != ExaProfile::kPaper) {
+      std::optional<std::string> smooth;
+      if (options.contact) {
+        plan.run.patches = static_cast<double>(patch_triangles(model));
+        if (const Result<void> fits = check_fits(plan.run, plan.room, RunStage::kContact); !fits) {
+          smooth = fits.error().message;
+          log_warning("contact: as smooth as patches, since {}", *smooth);
+        }
       } else {
-        contact.emplace().why = fits.error().message;
-        log_warning("contact: smooth patches stay, since {}", contact->why);
+        smooth = "nobody asked for it";
       }
-    }
-    if (contact && contact->traced) {
-      patches = contact->patches;
-    } else {
-      DUBSAR_ASSIGN(UntangledModel untangled, untangle(std::move(model), run));
-      model = std::move(untangled.model);
-      patches = std::move(untangled.patches);
+      SettleOptions settling = options.settle;
+      settling.curvature = options.curvature;
+      DUBSAR_ASSIGN(ClosedModel closed,
+                    dubsar::close_contact(std::move(model),
+                                          {smooth, options.contact.value_or(ContactRules{}), settling}, imported, run));
+      model = std::move(closed.model);
+      contact = std::move(closed.contact);
     }
     separated.holes->triangles = patch_triangles(model);
     return {};
@@ -184,14 +174,14 @@ struct Run {
       case RunStage::kSurface: return find();
       case RunStage::kMesh:
         DUBSAR_TRY(keep(smoothed.mesh, mesh_of_samples(found.sampled.samples, found.threshold.value, run)));
-        smoothed.mesh.embedded = !may_be_patched(options);
+        smoothed.mesh.embedded = true;
         return {};
       case RunStage::kSmooth:
         return keep(smoothed, smooth_and_measure(std::move(smoothed.mesh), options.smooth, options.curvature, run));
       case RunStage::kSettle: return settle_model();
       case RunStage::kParts:
         return keep(separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
-      case RunStage::kContact: return trace_or_untangle();
+      case RunStage::kContact: return close_contact();
       case RunStage::kLight: return light();
       case RunStage::kCheck: return keep(product, check_product(separated.model, run));
       case RunStage::kWrite: return {};  // write_product()
@@ -203,7 +193,7 @@ struct Run {
 Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& progress) {
   StageClock clock;
   DUBSAR_ASSIGN(std::unique_ptr<ImportedVolume> scan, open_volume(options.import));
-  Run run{options, {clock, progress}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  Run run{options, {clock, progress}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   DUBSAR_ASSIGN(run.plan, fit_run(*scan, wanted_shape(options), options.detail, options.import.budget, run.run));
   if (options.detail == Detail::kAuto)
     log_info("detail {}: {}", name_in(kDetails, run.plan.detail.detail), run.plan.detail.why);
@@ -216,7 +206,7 @@ Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& prog
   }
   PipelineResult result{std::move(run.separated.model), {}, std::move(run.product.mesh)};
   result.report = make_report({run.imported, run.found.steps, run.found.threshold, run.found.sampled, run.found.band,
-                               run.smoothed, run.settled, run.separated, run.contact, run.patches, run.product.check},
+                               run.smoothed, run.settled, run.separated, run.contact, run.product.check},
                               result.model, clock);
   result.model.provenance = dump_json(provenance_json(result.report, options));
   return result;
@@ -226,7 +216,6 @@ Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& prog
 
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress) {
   PipelineOptions watched = options;
-  if (watched.contact && watched.exa_profile == ExaProfile::kPaper) watched.contact = ContactMesh::kPatches;
   watched.import.same_files = std::make_shared<std::vector<FileIdentity>>();
   Result<PipelineResult> result = run_stages(watched, progress);
   // What a scan that changes is found to be, also damaged, is no finding about it.

@@ -28,8 +28,9 @@ struct PipelineOptions {
   ExaProfile exa_profile = ExaProfile::kCompact;
   SegmentOptions segment;
   bool fill_holes = true;
-  /// With filled holes only; none: the smooth patches stay. The paper's profile holds no labels: patches there.
-  std::optional<ContactMesh> contact = ContactMesh::kLabels;
+  /// By which the contact is traced in the scan, with filled holes only; none: it is as the smooth patches are. The
+  /// paper's profile holds no labels: the patches stay.
+  std::optional<ContactRules> contact = ContactRules{};
   std::optional<OcclusionOptions> occlusion = OcclusionOptions{};  ///< none: no ambient light
 };
 

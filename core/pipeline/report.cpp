@@ -137,16 +137,10 @@ json contact_json(const ContactReport& contact) {
               {"pockets", contact.pockets},
               {"film_vertices", contact.film_vertices},
               {"inferred_vertices", contact.inferred_vertices},
-              {"clays_differ", contact.clays_differ}};
+              {"clays_differ", contact.clays_differ},
+              {"touching", contact.touching}};
   if (!contact.traced) result["why"] = contact.why;
   return result;
-}
-
-json patches_json(const UntangleReport& patches) {
-  return {{"crossings_found", patches.crossings},
-          {"crossings_left", patches.left.size()},
-          {"moved_vertices", patches.moved},
-          {"added_vertices", patches.added}};
 }
 
 json exa_json(const ExaStats& stats) {
@@ -168,7 +162,6 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
                         .segment = results.separated.segment,
                         .holes = results.separated.holes,
                         .contact = results.contact,
-                        .patches = results.patches,
                         .detail = {results.imported.detail, results.band},
                         .mesh = results.check,
                         .surface = {model.mesh.vertex_count(), model.mesh.quad_count()},
@@ -280,7 +273,6 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
           {"band", band_json(report.detail.band)},
           {"segment", segment_json(report)},
           {"contact", report.contact ? contact_json(*report.contact) : json(nullptr)},
-          {"patches", report.patches ? patches_json(*report.patches) : json(nullptr)},
           {"partitions", partitions_json(report.partitions)},
           {"exa", exa_json(report.exa)},
           {"parameters", parameters_json(report, options)},
@@ -332,10 +324,9 @@ std::string report_text(const PipelineReport& report) {
     text += fmt::format(", contact: {} pockets, {} vertices of films, {} inferred", contact->pockets,
                         contact->film_vertices, contact->inferred_vertices);
   else if (contact)
-    text += fmt::format(", contact not traced: {}", contact->why);
-  if (const auto& patches = report.patches; patches && patches->crossings > 0)
-    text +=
-        fmt::format("\npatches: {} pairs of triangles crossed, {} do now", patches->crossings, patches->left.size());
+    text += fmt::format(", contact not traced in the scan: {}", contact->why);
+  if (const auto& contact = report.contact; contact && contact->touching > 0)
+    text += fmt::format(", polygons of {} cells touch others", contact->touching);
   text += fmt::format("\n{:<4}{:<24}{:>14}{:>14}  {}\n", "id", "part", "area mm2", "volume mm3", "");
   for (const Partition& part : report.partitions)
     text += fmt::format("{:<4}{:<24}{:>14.1f}{:>14.1f}  {}\n", part.id, part.name, part.area_mm2, part.volume_mm3,

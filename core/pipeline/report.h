@@ -47,9 +47,8 @@ struct PipelineReport {
   SurfaceDecisions surface_by;
   VertexMoves moves;
   SegmentReport segment;
-  std::optional<HoleReport> holes;        ///< when holes were filled
-  std::optional<ContactReport> contact;   ///< when tablet and envelope were told apart where they touch
-  std::optional<UntangleReport> patches;  ///< when holes were filled
+  std::optional<HoleReport> holes;       ///< when holes were filled
+  std::optional<ContactReport> contact;  ///< when tablet and envelope were told apart where they touch
   DetailTaken detail;
   MeshCheck mesh;  ///< of all parts together, with their fill patches
   SurfaceSize surface;
@@ -69,7 +68,6 @@ struct StageResults {
   const SettledModel& settled;
   const SeparatedModel& separated;
   const std::optional<ContactReport>& contact;
-  const std::optional<UntangleReport>& patches;
   const MeshCheck& check;
 };
 

@@ -2,7 +2,6 @@
 
 #include "core/base/system/log.h"
 #include "core/exa/paper/paper_profile.h"
-#include "core/exa/patches/patch_disk.h"
 #include "core/exa/patches/patches.h"
 #include "core/exa/values/attributes.h"
 #include "core/extract/extract.h"
@@ -74,18 +73,6 @@ Result<SeparatedModel> separate(SurfaceModel model, const SegmentOptions& option
   }
   run.clock.finish(separated.holes ? separated.holes->triangles : 0);
   return separated;
-}
-
-Result<UntangledModel> untangle(SurfaceModel model, StageRun run) {
-  UntangledModel result{std::move(model), {}};
-  run.clock.start("untangle", "crossing");
-  DUBSAR_ASSIGN(result.patches, untangle_patches(result.model, kPatchStep, run.progress));
-  if (result.patches.crossings > 0) {
-    settle_patches(result.model.patches, result.model.mesh.vertex_count());
-    DUBSAR_TRY(measure_partitions(result.model));
-  }
-  run.clock.finish(result.patches.crossings);
-  return result;
 }
 
 Result<SurfaceModel> shade(SurfaceModel model, const OcclusionOptions& options, StageRun run) {

@@ -10,7 +10,6 @@
 #include "core/parts/fill/holes.h"
 #include "core/parts/segment.h"
 #include "core/parts/surface_model.h"
-#include "core/parts/untangle.h"
 #include "core/pipeline/stage_clock.h"
 #include "core/relief/curvature/curvature.h"
 #include "core/relief/occlusion/occlusion.h"
@@ -42,13 +41,6 @@ struct SeparatedModel {
   std::optional<HoleReport> holes;  ///< when they were filled
 };
 Result<SeparatedModel> separate(SurfaceModel model, const SegmentOptions& options, bool fill, StageRun run);
-
-struct UntangledModel {
-  SurfaceModel model;
-  UntangleReport patches;
-};
-/// No patch crosses the surface, as far as that can be had. Partitions are measured anew if something moved.
-Result<UntangledModel> untangle(SurfaceModel model, StageRun run);
 
 /// The light of each dual vertex, from the triangles of its own body.
 Result<SurfaceModel> shade(SurfaceModel model, const OcclusionOptions& options, StageRun run);

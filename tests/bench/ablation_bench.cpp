@@ -1,5 +1,5 @@
-// What each rule of the contact is worth: ./do bench ablation. Scans are processed up to the contact once; that is then
-// traced with all rules, and with all but one, for every rule.
+// What each rule of the contact is worth: ./do bench ablation. Scans are processed with all rules, and with all but
+// one, for every rule.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,11 +13,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/contact/trace.h"
+#include "core/contact/rules.h"
 #include "core/mesh/evidence.h"
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/pipeline.h"
-#include "core/volume/formats/import.h"
 #include "tests/bench/contact_rows.h"
 #include "tests/core/phantom/contact_score.h"
 
@@ -122,7 +121,7 @@ Figures figures_of(const phantom::Phantom& truth, const SurfaceModel& model) {
           static_cast<double>(score.false_wedges())};
 }
 
-/// A scan that was processed up to its contact.
+/// A scan, and its truth.
 class PreparedScan {
  public:
   PreparedScan(const phantom::PhantomOptions& wanted, int cropped)
@@ -130,16 +129,10 @@ class PreparedScan {
         truth_(value_or_exit(phantom::Phantom::create(wanted))) {
     SilentProgress progress;
     value_or_exit(phantom::write_phantom(path_, std::nullopt, wanted, progress));
-    PipelineOptions options;
-    options.import.path = path_;
-    if (cropped > 0) options.import.crop = CropRange{{cropped, cropped, cropped}, {-1, -1, -1}};
-    options.detail = Detail::kScan;
-    options.contact = std::nullopt;
-    options.occlusion.reset();
-    result_.emplace(value_or_exit(run_pipeline(options, progress)));
-    scan_ = value_or_exit(open_volume(options.import));
-    trace_.halve_first = true;
-    if (result_->report.scan.blur) trace_.blur_variance = static_cast<float>(result_->report.scan.blur->variance);
+    options_.import.path = path_;
+    if (cropped > 0) options_.import.crop = CropRange{{cropped, cropped, cropped}, {-1, -1, -1}};
+    options_.detail = Detail::kScan;
+    options_.occlusion.reset();
   }
   ~PreparedScan() {
     std::error_code ignored;
@@ -149,20 +142,15 @@ class PreparedScan {
   PreparedScan& operator=(const PreparedScan&) = delete;
 
   Figures traced(ContactRules rules) {
-    SurfaceModel model = result_->model;
-    ContactOptions options = trace_;
-    options.rules = rules;
+    options_.contact = rules;
     SilentProgress progress;
-    value_or_exit(trace_contact(model, *scan_, options, progress));
-    return figures_of(*truth_, model);
+    return figures_of(*truth_, value_or_exit(run_pipeline(options_, progress)).model);
   }
 
  private:
   std::filesystem::path path_;
   std::unique_ptr<const phantom::Phantom> truth_;
-  std::optional<PipelineResult> result_;
-  std::unique_ptr<ImportedVolume> scan_;
-  ContactOptions trace_;
+  PipelineOptions options_;
 };
 
 using Table = std::map<std::string, std::vector<Figures>>;  ///< of each rule that was left out, one for each scan

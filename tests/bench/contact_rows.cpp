@@ -11,7 +11,6 @@
 #include "core/base/system/parallel.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/exact_crossings.h"
-#include "core/mesh/intersections.h"
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/pipeline.h"
 
@@ -70,16 +69,9 @@ void judge_tablet(const phantom::Phantom& truth, const TriMesh& tablet, const st
 }
 
 void count_crossings(const TriMesh& mesh, JudgedRow& judged) {
-  const auto of_patch = [&](std::uint32_t t) {
-    return std::any_of(mesh.triangles[t].begin(), mesh.triangles[t].end(), [&](std::uint32_t v) {
-      return !mesh.evidence.empty() && mesh.evidence[v] >= evidence_byte(Evidence::kFilm);
-    });
-  };
-  for (const auto& [a, b] : self_intersections(mesh.positions, mesh.triangles))
-    ++(of_patch(a) || of_patch(b) ? judged.crossings.of_patches : judged.crossings.of_surface);
   const ExactCheck exact = check_exactly(mesh.positions, mesh.triangles);
-  judged.crossings.exact.crossing_pairs += exact.crossing_pairs;
-  judged.crossings.exact.zero_area_triangles += exact.zero_area_triangles;
+  judged.crossings.crossing_pairs += exact.crossing_pairs;
+  judged.crossings.zero_area_triangles += exact.zero_area_triangles;
 }
 
 }  // namespace
@@ -168,7 +160,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   PipelineOptions options;
   options.import.path = path;
   options.detail = how.detail;
-  options.contact = how.mesh;
+  if (!how.contact) options.contact.reset();
   if (!how.light) options.occlusion.reset();
   const PipelineResult result = value_or_exit(run_pipeline(options, progress));
   JudgedRow judged;

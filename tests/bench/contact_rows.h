@@ -40,19 +40,13 @@ struct TabletError {
 /// Mean and half of the range of some values, at least one; of one: itself.
 std::string spread_text(const std::vector<double>& values, int digits);
 
-struct Crossings {
-  std::int64_t of_patches = 0;  ///< pairs of triangles, one of a patch, that cross on tablet or envelope
-  std::int64_t of_surface = 0;  ///< pairs of the surface itself
-  ExactCheck exact;             ///< of tablet and envelope, each alone
-};
-
 struct JudgedRow {
   phantom::ContactScore contact;
   phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
   TabletError tablet;
   float sharpen = 0.0f;  ///< amount that was used
   float sharpen_wide = 0.0f;
-  Crossings crossings;
+  ExactCheck crossings;  ///< of tablet and envelope, each alone
   bool traced = false;
   std::optional<EdgeSpread> blur;
   double step = 1.0;   ///< voxels of the scan in one of the grid
@@ -63,7 +57,7 @@ struct JudgedRow {
 
 struct JudgeOptions {
   Detail detail = Detail::kAuto;
-  ContactMesh mesh = ContactMesh::kPatches;
+  bool contact = true;  ///< traced in the scan
   bool light = false;   ///< with ambient occlusion, so that the times are those of `dubsar process`
   bool judge = true;    ///< false: times and memory only
   bool cover = false;   ///< fills in TabletError::cover

@@ -32,7 +32,7 @@ TABLE_2 = [
     ("ambient occlusion, 160 rays, radius 64", 28.6 * 60, ["occlusion"], "vertices"),
 ]
 VOLUME_STAGES = {"import", "resample", "denoise", "extract"}
-NOT_FITTED = {"estimate_raw", "blur", "estimate", "untangle", "fill_holes", "contact", "occlusion"}  # samples, histograms, loops, bands
+NOT_FITTED = {"estimate_raw", "blur", "estimate", "fill_holes", "contact", "occlusion"}  # samples, histograms, loops, bands
 
 
 class Run:

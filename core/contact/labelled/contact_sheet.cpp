@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "core/base/numbers/disjoint_sets.h"
+#include "core/mesh/evidence.h"
 
 namespace dubsar {
 namespace {
@@ -62,6 +63,32 @@ struct SheetRim {
 };
 
 }  // namespace
+
+ContactSheet sheet_of_patches(const SurfaceModel& model) {
+  ContactSheet sheet;
+  const auto surface = static_cast<std::uint32_t>(model.mesh.positions.size());
+  const auto each_patch = [&](const auto& visit) {
+    for (const FillPatch& patch : model.patches)
+      if (is_contact_patch(model, patch)) visit(patch);
+  };
+  std::unordered_map<std::uint32_t, std::uint32_t> dual;  // of vertices of the surface
+  each_patch([&](const FillPatch& patch) {
+    for (const Triangle& t : patch.triangles)
+      for (const std::uint32_t v : t)
+        if (v < surface && dual.try_emplace(v, static_cast<std::uint32_t>(dual.size())).second)
+          sheet.dual_positions.push_back(model.mesh.positions[v]);
+  });
+  each_patch([&](const FillPatch& patch) {
+    const auto first = static_cast<std::uint32_t>(sheet.dual_positions.size() + sheet.mesh.added.size());
+    const bool out = model.partitions[patch.partition].kind == PartitionKind::kTablet;
+    const auto id = [&](std::uint32_t v) { return v < surface ? dual.at(v) : first + v - surface; };
+    for (const Triangle& t : patch.triangles)
+      sheet.mesh.triangles.push_back({id(t[0]), id(t[out ? 1 : 2]), id(t[out ? 2 : 1])});
+    sheet.mesh.added.insert(sheet.mesh.added.end(), patch.extra_positions.begin(), patch.extra_positions.end());
+  });
+  sheet.evidence.assign(sheet.mesh.added.size(), evidence_byte(Evidence::kInferred));
+  return sheet;
+}
 
 std::vector<float> distances_from_sheet(const ContactBand& band, const InterfaceMesh& sheet,
                                         const std::vector<glm::vec3>& dual_positions) {

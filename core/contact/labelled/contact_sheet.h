@@ -5,9 +5,20 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/contact/band.h"
 #include "core/contact/interface_mesh.h"
+#include "core/parts/surface_model.h"
 
 namespace dubsar {
+
+struct ContactSheet {
+  InterfaceMesh mesh;
+  std::vector<glm::vec3> dual_positions;  ///< of vertices that belong to the surface of the air, too
+  std::vector<std::uint8_t> evidence;     ///< of the added vertices (evidence.h)
+};
+
+/// The fill patches between tablet and envelope: all of it is inferred.
+ContactSheet sheet_of_patches(const SurfaceModel& model);
 
 /// Of each node of the band: its distance from the sheet, positive on the envelope's side; NaN where it is far;
 /// infinity where the nearest place is the sheet's rim, beyond which there is no other side.

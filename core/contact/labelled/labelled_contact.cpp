@@ -8,7 +8,6 @@
 
 #include "core/base/system/log.h"
 #include "core/contact/labelled/clay_labels.h"
-#include "core/contact/labelled/contact_sheet.h"
 #include "core/extract/labelled/labelled_mesh.h"
 #include "core/extract/labelled/quad_edges.h"
 #include "core/mesh/evidence.h"
@@ -55,14 +54,9 @@ std::vector<std::uint16_t> quantised(const std::vector<float>& along, int bits) 
 }
 
 /// The contact of a labelled mesh alone.
-struct Sheet {
-  InterfaceMesh mesh;
-  std::vector<glm::vec3> dual_positions;  ///< of vertices that belong to the surface of the air, too
-};
-
-Sheet sheet_of(const ContactQuads& contact, const DividedClay& clay, const ContactEdges& edges,
-               const std::vector<float>& along) {
-  Sheet sheet;
+ContactSheet sheet_of(const ContactQuads& contact, const DividedClay& clay, const ContactEdges& edges,
+                      const std::vector<float>& along) {
+  ContactSheet sheet;
   const QuadMesh& mesh = contact.mesh;
   std::vector<std::uint32_t> id(mesh.positions.size(), kNotOfSheet);
   std::vector<std::uint32_t> inner;
@@ -198,28 +192,27 @@ void give_faces_to_labels(SurfaceModel& model, const LabelledMesh& labelled, con
 
 }  // namespace
 
-Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress) {
+Result<ContactSheet> sheet_of_cut(const SurfaceModel& model, const DividedClay& clay, const BandDensity& density,
+                                  const ShapeOptions& shape, Progress& progress) {
+  const EnvelopeBits envelope = label_clay(model.samples.signs, clay.band, clay.side);
+  const PointLabels labels(model.samples.signs, envelope);
+  const ContactEdges edges(labels);
+  const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
+    return dip_along(clay.band, clay.dips, n, m, axis);
+  });
+  DUBSAR_ASSIGN(const ContactQuads cut, build_contact_quads(model.samples, clay.index, labels, edges,
+                                                            quantised(along, model.samples.offset_bits)));
+  ContactSheet sheet = sheet_of(cut, clay, edges, along);
+  sheet.evidence = shape_interface(sheet.mesh, sheet.dual_positions, density, shape);
+  if (progress.cancelled()) return cancelled_error();
+  return sheet;
+}
+
+Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, const ContactSheet& sheet,
+                                             Progress& progress) {
   LabelledContact report;
   const int bits = model.samples.offset_bits;
-
-  // The contact as the cut has it, moved to where the scan shows it.
-  Sheet sheet;
-  {
-    const EnvelopeBits envelope = label_clay(model.samples.signs, clay.band, clay.side);
-    const PointLabels labels(model.samples.signs, envelope);
-    const ContactEdges edges(labels);
-    const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
-      return dip_along(clay.band, clay.dips, n, m, axis);
-    });
-    DUBSAR_ASSIGN(const ContactQuads cut,
-                  build_contact_quads(model.samples, clay.index, labels, edges, quantised(along, bits)));
-    sheet = sheet_of(cut, clay, edges, along);
-  }
-  const std::vector<std::uint8_t> evidence =
-      shape_interface(sheet.mesh, sheet.dual_positions, clay.density, clay.shape);
   if (progress.cancelled()) return cancelled_error();
-
-  // Labels and crossings of where it is now.
   const std::vector<float> distances = distances_from_sheet(clay.band, sheet.mesh, sheet.dual_positions);
   std::vector<ClaySide> side = clay.side;
   follow_sheet(clay.band, distances, kSheetSteps, kLeastClay, side);
@@ -240,10 +233,9 @@ Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedC
                                               }),
                               bits);
   DUBSAR_ASSIGN(ContactQuads contact, build_contact_quads(model.samples, clay.index, labels, edges, surface.contact));
-  const NearestEvidence known(sheet.mesh, evidence);
+  const NearestEvidence known(sheet.mesh, sheet.evidence);
   for (std::size_t v = 0; v < contact.at_air.size(); ++v)
     if (contact.at_air[v] == 0) surface.evidence.push_back(known.at(contact.mesh.positions[v]));
-  model.mesh.embedded = true;  // patches have made it another
   DUBSAR_ASSIGN(report.mesh, put_labels(std::move(model.mesh), std::move(contact), model.samples, clay.index, labels));
   give_faces_to_labels(model, report.mesh, clay.index, labels, unasked);
   report.film_vertices = std::ranges::count(surface.evidence, evidence_byte(Evidence::kFilm));

@@ -1,7 +1,6 @@
 #pragma once
 // Tablet, envelope and air as labels of grid points, meshed once: the contact without patches (docs/manifold.md).
 
-#include <optional>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -9,6 +8,7 @@
 #include "core/contact/clay_sides.h"
 #include "core/contact/dips.h"
 #include "core/contact/interface_shape.h"
+#include "core/contact/labelled/contact_sheet.h"
 #include "core/contact/pockets.h"
 #include "core/extract/edge_index.h"
 #include "core/extract/labelled/labelled_mesh.h"
@@ -19,15 +19,17 @@ namespace dubsar {
 /// What is known when the clay has been divided.
 struct DividedClay {
   const ContactBand& band;
-  const BandDensity& density;
   const Dips& dips;
   const EdgeIndex& index;
   const FaceGraph& graph;
   const std::vector<BandFace>& faces;
   const std::vector<ClayCavity>& pores;
   const std::vector<ClaySide>& side;
-  ShapeOptions shape;
 };
+
+/// The contact as the cut has it, moved to where the scan shows it. Errors of build_contact_quads(), kCancelled.
+Result<ContactSheet> sheet_of_cut(const SurfaceModel& model, const DividedClay& clay, const BandDensity& density,
+                                  const ShapeOptions& shape, Progress& progress);
 
 struct LabelledContact {
   LabelledMesh mesh;  ///< with the model's places where no cell is mixed
@@ -35,9 +37,10 @@ struct LabelledContact {
   std::int64_t relabelled = 0;  ///< points of clay that the sheet's place gave to the other
 };
 
-/// Gives the model labels (SurfaceModel::labelled), and its faces to the parts that they say. The mesh goes out of the
-/// model: put_labelled_mesh() (labelled_model.h) puts it back. Its vertices must lie in their cells. Errors of
-/// build_labelled_mesh(), kCancelled.
-Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, Progress& progress);
+/// Gives the model labels (SurfaceModel::labelled) on both sides of the sheet, and its faces to the parts that they
+/// say. The mesh goes out of the model: put_labelled_mesh() (labelled_model.h) puts it back. Its vertices must lie in
+/// their cells. Errors of build_labelled_mesh(), kCancelled.
+Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedClay& clay, const ContactSheet& sheet,
+                                             Progress& progress);
 
 }  // namespace dubsar

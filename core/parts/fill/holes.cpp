@@ -359,9 +359,6 @@ Result<HoleReport> fill_holes(SurfaceModel& model, const FaceGraph& graph, const
   if (!options.keep_patches) model.patches.clear();
   progress.begin("fill holes", 0, "vertex");
   DUBSAR_ASSIGN(HoleReport report, HoleFiller(model, graph, options, progress).run());
-  // Patches are kept from crossing the surface as it was cut before there were points on faces (untangle.h): with these
-  // more of them crossed it, not fewer.
-  if (!model.patches.empty()) model.mesh.embedded = false;
   if (!options.measure) {
     progress.end();
     return report;

@@ -64,14 +64,12 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   const PipelineReport& report = result->report;
   std::vector<std::string> stages;
   for (const StageRecord& stage : report.stages) stages.push_back(stage.name);
-  if (!report.contact->traced) std::erase(stages, "untangle");  // its patches are looked at when it is traced
   EXPECT_EQ(stages, (std::vector<std::string>{"estimate_raw", "import",   "resample",  "blur",      "rays",   "rings",
                                               "axis",         "estimate", "denoise",   "estimate",  "sample", "band",
                                               "extract",      "mesh",     "smooth",    "curvature", "settle", "segment",
                                               "fill_holes",   "contact",  "occlusion", "check",     "write"}));
   for (const StageRecord& stage : report.stages) {
-    EXPECT_GE(stage.work, stage.name == "fill_holes" || stage.name == "untangle" || stage.name == "blur" ? 0 : 1)
-        << stage.name;
+    EXPECT_GE(stage.work, stage.name == "fill_holes" || stage.name == "blur" ? 0 : 1) << stage.name;
   }
 
   const nlohmann::json json = report_json(report, options());

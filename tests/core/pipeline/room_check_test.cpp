@@ -82,7 +82,7 @@ TEST_F(Room, WhatSurelyFitsIsNotLookedAtTwice) {
 
 TEST_F(Room, TheScanIsOpenedOnce) {
   PipelineOptions wanted = options();
-  wanted.contact = ContactMesh::kPatches;
+  wanted.contact.emplace();
   wanted.import.voxel_size_mm = glm::dvec3(5.0);  // every opening warns of that
   SilentProgress progress;
   int warnings = 0;
@@ -138,7 +138,7 @@ TEST_F(RoomOfBudgets, ADozenAreKeptOrRefusedBeforeTheScanIsRead) {
   PipelineOptions run = options();
   run.import.path = folder_ / "scan256.h5";
   run.import.budget.scratch_folder = folder_;
-  run.contact = ContactMesh::kPatches;
+  run.contact.emplace();
   const auto try_budgets = [&](Detail detail, const std::vector<std::uint64_t>& mib) {
     run.detail = detail;
     int made = 0;
