@@ -15,7 +15,6 @@
 #include "core/exa/exa_plausible.h"
 #include "core/exa/exa_salvage.h"
 #include "core/exa/offsets/settle.h"
-#include "core/exa/paper/paper_profile.h"
 #include "core/exa/patches/patches.h"
 #include "core/mesh/mesh_check.h"
 #include "core/pipeline/report.h"
@@ -28,7 +27,6 @@ using nlohmann::json;
 struct ExaRequest {
   std::string in, out;
   float max_error = 1.0f / 16.0f;
-  ExaProfile profile = ExaProfile::kCompact;
   std::string box;
   int level = 0;
 };
@@ -51,54 +49,10 @@ std::string stats_text(const ExaStats& stats) {
   double signs = 0.0;
   for (const ExaBlockStats& block : stats.blocks) {
     text += fmt::format("{:<16}{:>12}{:>10}{:>16.4f}\n", block.name, block.bytes, block.chunks, block.bits_per_vertex);
-    if (block.name.starts_with("signs_") || block.name == "paper_octets") signs += block.bits_per_vertex;
+    if (block.name.starts_with("signs_")) signs += block.bits_per_vertex;
   }
   text += fmt::format("{:<16}{:>12}{:>10}{:>16.4f}\n", "all", stats.bytes, "", stats.bits_per_vertex);
   return text + fmt::format("topology {:.4f} bits a vertex, {} vertices\n", signs, stats.vertices);
-}
-
-/// What the paper prints for a scan of 10 million vertices (tables 2 and 3), in bits a vertex.
-struct PrintedFigure {
-  const char* what;
-  std::vector<std::string> blocks;
-  double bits;
-};
-const std::vector<PrintedFigure>& printed_figures() {
-  static const std::vector<PrintedFigure> figures{
-      {"topology", {"paper_octets", "paper_face_decisions"}, 1.168},
-      {"crossings of 4 bits", {"paper_offsets"}, 3.984},
-      {"places", {"paper_places"}, 19.9},
-      {"normals", {"paper_normals"}, 19.1},
-      {"shape, partition, light", {"paper_words", "paper_exceptions"}, 16.1},
-  };
-  return figures;
-}
-
-double bits_of(const ExaStats& stats, const std::vector<std::string>& blocks) {
-  double bits = 0.0;
-  for (const ExaBlockStats& block : stats.blocks)
-    if (std::find(blocks.begin(), blocks.end(), block.name) != blocks.end()) bits += block.bits_per_vertex;
-  return bits;
-}
-
-/// The same groups here and in the paper.
-std::string paper_text(const ExaStats& stats) {
-  std::string text = fmt::format("\n{:<28}{:>12}{:>12}\n", "bits a vertex", "here", "in the paper");
-  double here = 0.0;
-  for (const PrintedFigure& figure : printed_figures()) {
-    const double bits = bits_of(stats, figure.blocks);
-    here += bits;
-    text += fmt::format("{:<28}{:>12.3f}{:>12.3f}\n", figure.what, bits, figure.bits);
-  }
-  return text + fmt::format("{:<28}{:>12.3f}{:>12.3f}\n", "all of these", here, 60.223);
-}
-json paper_json(const ExaStats& stats) {
-  json figures = json::array();
-  for (const PrintedFigure& figure : printed_figures())
-    figures.push_back({{"what", figure.what},
-                       {"bits_per_vertex", bits_of(stats, figure.blocks)},
-                       {"bits_per_vertex_in_the_paper", figure.bits}});
-  return figures;
 }
 
 Result<VerbResult> stat(const ExaRequest& options) {
@@ -107,11 +61,6 @@ Result<VerbResult> stat(const ExaRequest& options) {
   result.text = stats_text(info.stats);
   result.json = stats_json(info.stats);
   result.json["version"] = info.major;
-  result.json["profile"] = name_in(kExaProfiles, info.header.profile);
-  if (info.header.profile == ExaProfile::kPaper) {
-    result.text += paper_text(info.stats);
-    result.json["paper"] = paper_json(info.stats);
-  }
   return result;
 }
 
@@ -143,11 +92,10 @@ Result<VerbResult> recompress(const ExaRequest& options, Progress& progress) {
   settle.exact_normals = before.header.normals == ExaNormals::kExact;  // somebody asked for them
   SettleStats stats;
   if (!model.labelled) {  // else it was settled when its parts were made
-    DUBSAR_ASSIGN(stats, options.profile == ExaProfile::kPaper ? settle_for_paper(model, settle, progress)
-                                                               : settle_for_exa(model, settle, progress));
+    DUBSAR_ASSIGN(stats, settle_for_exa(model, settle, progress));
     settle_patches(model.patches, model.mesh.vertex_count());
   }
-  DUBSAR_ASSIGN(const ExaStats after, write_exa(options.out, model, progress, options.profile));
+  DUBSAR_ASSIGN(const ExaStats after, write_exa(options.out, model, progress));
   VerbResult result;
   result.text = fmt::format(
       "{}: {} bytes, before {}; vertices moved off the surface by {:.4f} of a grid step at most, normals by "
@@ -219,8 +167,6 @@ Verb add_exa_verb(Arguments program) {
   recompress_command
       .value("--max-error", options->max_error, "largest distance of a vertex from the surface before, in grid steps")
       .positive();
-  recompress_command.choice<ExaProfile>("--exa-profile", options->profile, choices_of(kExaProfiles),
-                                        "compact (default), or as in the paper, to compare");
   Arguments salvage_command = command.subcommand(
       "salvage", "what is whole of a damaged file: what is left out is named, lost bricks are marked as inferred");
   salvage_command.reads("IN", options->in, "EXA file").required();
@@ -237,7 +183,6 @@ Verb add_exa_verb(Arguments program) {
       "  dubsar exa verify tablet.exa\n"
       "  dubsar exa recompress old.exa -o new.exa\n"
       "  dubsar exa salvage damaged.exa -o rest.exa\n"
-      "  dubsar exa recompress tablet.exa --exa-profile paper -o paper.exa\n"
       "  dubsar exa part tablet.exa --level 2 -o preview.exa");
   return {command, [options, stat_command, verify_command, salvage_command, part_command](const CommonOptions&,
                                                                                           Progress& progress) {

@@ -100,8 +100,6 @@ void add_surface_options(Arguments command, ProcessRequest& options) {
              "largest distance of a stored vertex from the smoothed surface in grid steps (default 1/16)")
       .positive();
   group.flag("--exact-normals", p.settle.exact_normals, "store normals and curvatures to the last bit");
-  group.choice<ExaProfile>("--exa-profile", p.exa_profile, choices_of(kExaProfiles),
-                           "how the file is coded: compact (default), or as in the paper, to compare (docs/exa.md)");
   group.choice<SegmentMethod>(
       "--segment", p.segment.method, choices_of(kSegmentMethods),
       "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
@@ -199,7 +197,7 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
         "; allow more with --memory, take --detail half where it is not taken yet, a part of the scan with --crop, or "
         "fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
-  DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
+  DUBSAR_TRY(write_product(options.out, result, progress));
   result.model = {};  // it is in the file
   DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(result.mesh, result.report.mesh.watertight()));
   VerbResult out;

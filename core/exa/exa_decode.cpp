@@ -11,8 +11,6 @@
 #include "core/exa/labels/labelled_code.h"
 #include "core/exa/offsets/offsets.h"
 #include "core/exa/offsets/settle.h"
-#include "core/exa/paper/paper_profile.h"
-#include "core/exa/paper/paper_signs.h"
 #include "core/exa/patches/patch_evidence.h"
 #include "core/exa/patches/patches.h"
 #include "core/exa/signs/sign_brick.h"
@@ -40,10 +38,6 @@ Result<void> decode_positions(const ExaReader& reader, SurfaceModel& model, Prog
     DUBSAR_ASSIGN(const ExaChunks escapes, reader.chunks("ESCP", kCodec));
     DUBSAR_TRY(decode_escapes(escapes.chunks, model.mesh, progress));
   }
-  if (reader.has("PPOS")) {
-    DUBSAR_ASSIGN(const ExaChunks places, reader.chunks("PPOS", kCodec));
-    DUBSAR_TRY(decode_paper_positions(places.chunks, model.mesh.positions, progress));
-  }
   if (reader.has("POSN")) {
     DUBSAR_ASSIGN(const ExaChunks exact, reader.chunks("POSN", kCodec));
     DUBSAR_TRY(decode_floats(exact.chunks, 3, "positions", floats_of(model.mesh.positions), progress));
@@ -58,13 +52,8 @@ Result<void> decode_positions(const ExaReader& reader, SurfaceModel& model, Prog
 Result<void> decode_normals(const ExaReader& reader, const ExaHeader& header, SurfaceModel& model, Progress& progress) {
   VertexAttributes& a = model.attributes;
   const std::size_t vertices = model.mesh.positions.size();
-  if (header.normals == ExaNormals::kRecomputed || header.normals == ExaNormals::kQuantised) {
-    if (header.normals == ExaNormals::kQuantised) {
-      DUBSAR_ASSIGN(const ExaChunks steps, reader.chunks("PNRM", kCodec));
-      DUBSAR_ASSIGN(a.normals, decode_paper_normals(steps.chunks, vertices, progress));
-    } else {
-      DUBSAR_ASSIGN(a.normals, recomputed_normals(model.mesh, progress));
-    }
+  if (header.normals == ExaNormals::kRecomputed) {
+    DUBSAR_ASSIGN(a.normals, recomputed_normals(model.mesh, progress));
     if (!header.curvatures) return {};
     DUBSAR_ASSIGN(Curvatures k, principal_curvatures(model.mesh, a.normals, header.curvature, progress));
     a.k_min = std::move(k.k_min);
@@ -98,14 +87,6 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
     DUBSAR_ASSIGN(out, decode_labels(label, model.mesh, chunks.chunks, progress));
     return {};
   };
-  if (reader.has("PATT")) {
-    DUBSAR_ASSIGN(const ExaChunks words, reader.chunks("PATT", kCodec));
-    ExaChunks exceptions;
-    if (reader.has("PQEX")) {
-      DUBSAR_ASSIGN(exceptions, reader.chunks("PQEX", kCodec));
-    }
-    DUBSAR_TRY(decode_paper_words(words.chunks, exceptions.chunks, model));
-  }
   if (header.shapes && !model.attributes.k_min.empty()) {
     model.attributes.shape = shape_classes(model.attributes.k_min, model.attributes.k_max);
   } else if (!header.shapes) {
@@ -152,23 +133,13 @@ Result<SurfaceModel> bare(SurfaceModel model, const ExaHeader& header, Progress&
 
 Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, const EdgeIndex& index,
                             SurfaceSamples& samples, Progress& progress, const ExaDamage& damage) {
-  if (header.profile == ExaProfile::kCompact) {
-    const std::vector<std::uint8_t>& lost = damage.offsets;
-    DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec, all_but(lost)));
-    DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec, all_but(damage.faces)));
-    DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, index, samples, progress,
-                              {header.sums.far_sides, header.sums.far_sides, header.sums.far_sides}));
-    for (std::size_t i = 0; i < lost.size(); ++i)
-      if (lost[i] != 0) put_crossings_half_way(samples, index, i);
-    return {};
-  }
-  DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("POFF", kCodec));
-  DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("PFCE", kCodec));
-  samples.offsets.resize(static_cast<std::size_t>(header.samples.edges));
-  DUBSAR_TRY(decode_paper_bits(offsets.chunks, samples.offset_bits, "offsets", samples.offsets));
-  std::vector<std::uint16_t> joined(static_cast<std::size_t>(header.samples.faces));
-  DUBSAR_TRY(decode_paper_bits(faces.chunks, 1, "face decisions", joined));
-  samples.joined.assign(joined.begin(), joined.end());
+  const std::vector<std::uint8_t>& lost = damage.offsets;
+  DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec, all_but(lost)));
+  DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec, all_but(damage.faces)));
+  DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, index, samples, progress,
+                            {header.sums.far_sides, header.sums.far_sides, header.sums.far_sides}));
+  for (std::size_t i = 0; i < lost.size(); ++i)
+    if (lost[i] != 0) put_crossings_half_way(samples, index, i);
   return {};
 }
 
@@ -190,14 +161,6 @@ Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::fu
 
 Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& header, int level, Progress& progress,
                                      const std::vector<std::uint8_t>& lost) {
-  if (header.profile == ExaProfile::kPaper) {
-    const auto finest = static_cast<std::size_t>(std::max(0, paper_levels(header.dims) - level));
-    DUBSAR_ASSIGN(const ExaChunks octets,
-                  reader.chunks(
-                      "POCT", kCodec,
-                      level == 0 ? std::function<bool(std::size_t)>() : [=](std::size_t i) { return i <= finest; }));
-    return decode_signs_as_paper(octets.chunks, header.dims, level);
-  }
   DUBSAR_ASSIGN(LoadedSigns loaded, load_signs(reader, level, all_but(lost)));
   loaded.chunks.lost = lost;
   return decode_signs(loaded.chunks, header.dims, level, std::nullopt,

@@ -8,8 +8,6 @@
 #include "core/exa/labels/labelled_code.h"
 #include "core/exa/offsets/offsets.h"
 #include "core/exa/offsets/settle.h"
-#include "core/exa/paper/paper_profile.h"
-#include "core/exa/paper/paper_signs.h"
 #include "core/exa/patches/patch_evidence.h"
 #include "core/exa/patches/patches.h"
 #include "core/exa/signs/sign_brick.h"
@@ -68,27 +66,23 @@ Result<void> find_normals(const SurfaceModel& model, ExaHeader& header, Progress
   header.normals = a.normals.empty() && a.k_min.empty() ? ExaNormals::kNone : ExaNormals::kExact;
   header.curvatures = !a.k_min.empty();
   if (a.normals.empty()) return {};
-  if (header.profile == ExaProfile::kCompact && model.settled_sum != 0 && model.settled_sum == settled_sum(model)) {
+  if (model.settled_sum != 0 && model.settled_sum == settled_sum(model)) {
     header.normals = ExaNormals::kRecomputed;  // settle_for_exa() did
     return {};
   }
-  ExaNormals kind = ExaNormals::kRecomputed;
-  if (header.profile == ExaProfile::kPaper) {
-    if (!encode_paper_normals(a.normals, progress)) return {};
-    kind = ExaNormals::kQuantised;
-  } else {
+  {
     DUBSAR_ASSIGN(const std::vector<glm::vec3> normals, recomputed_normals(model.mesh, progress));
     if (!same(normals, a.normals)) return {};
   }
   for (const CurvatureMethod method : {CurvatureMethod::kFit, CurvatureMethod::kPairs}) {
     header.curvature = method;
     if (a.k_min.empty()) {
-      header.normals = kind;
+      header.normals = ExaNormals::kRecomputed;
       return {};
     }
     DUBSAR_ASSIGN(const Curvatures k, principal_curvatures(model.mesh, a.normals, method, progress));
     if (!same(k.k_min, a.k_min) || !same(k.k_max, a.k_max)) continue;
-    header.normals = kind;
+    header.normals = ExaNormals::kRecomputed;
     return {};
   }
   header.curvature = CurvatureMethod::kFit;
@@ -123,15 +117,9 @@ class BlockList {
   std::vector<ExaBlock> blocks_;
 };
 
-void add_positions(const SurfaceModel& model, const QuadMesh& base, ExaProfile profile, BlockList& blocks,
-                   Progress& progress) {
+void add_positions(const SurfaceModel& model, const QuadMesh& base, BlockList& blocks, Progress& progress) {
   if (same(base.positions, model.mesh.positions)) return;
-  if (profile == ExaProfile::kPaper) {
-    if (const auto places = encode_paper_positions(base.positions, model.mesh.positions, progress)) {
-      blocks.add("PPOS", true, *places);
-      return;
-    }
-  } else if (const auto escapes = encode_escapes(base, model.mesh.positions, progress)) {
+  if (const auto escapes = encode_escapes(base, model.mesh.positions, progress)) {
     blocks.add("ESCP", true, *escapes);
     return;
   }
@@ -139,14 +127,7 @@ void add_positions(const SurfaceModel& model, const QuadMesh& base, ExaProfile p
 }
 
 /// Signs, offsets, face decisions.
-Result<void> add_samples(const SurfaceSamples& samples, ExaProfile profile, BlockList& blocks, Progress& progress) {
-  if (profile == ExaProfile::kPaper) {
-    blocks.add("POCT", true, encode_signs_as_paper(samples.signs));
-    const std::vector<std::uint16_t> joined(samples.joined.begin(), samples.joined.end());
-    blocks.add("PFCE", true, encode_paper_bits(joined, 1, progress));
-    blocks.add("POFF", true, encode_paper_bits(samples.offsets, samples.offset_bits, progress));
-    return {};
-  }
+Result<void> add_samples(const SurfaceSamples& samples, BlockList& blocks, Progress& progress) {
   DUBSAR_ASSIGN(const SignCode signs, encode_signs(samples.signs, progress));
   blocks.add("SIGC", true, signs.coarse);
   for (std::size_t level = kBrickLevels; level-- > 0;) blocks.add(kSignBlocks[level], true, signs.bricks[level]);
@@ -159,12 +140,6 @@ Result<void> add_samples(const SurfaceSamples& samples, ExaProfile profile, Bloc
 /// Shape classes, light, partitions of x-quads.
 void add_labels(const SurfaceModel& model, const ExaHeader& header, BlockList& blocks, Progress& progress) {
   const VertexAttributes& a = model.attributes;
-  if (header.profile == ExaProfile::kPaper) {
-    const PaperWords code = encode_paper_words(model, !header.shapes, progress);
-    if (!code.words.empty()) blocks.add("PATT", false, code.words);
-    if (!code.exceptions.empty()) blocks.add("PQEX", false, code.exceptions);
-    return;
-  }
   const auto labels = [&](const char* type, ExaLabel label, const std::vector<std::uint8_t>& values) {
     if (!values.empty()) blocks.add(type, false, encode_labels(label, model.mesh, values, progress));
   };
@@ -175,9 +150,7 @@ void add_labels(const SurfaceModel& model, const ExaHeader& header, BlockList& b
 
 }  // namespace
 
-Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress, ExaProfile profile) {
-  if (model.labelled && profile == ExaProfile::kPaper)
-    return fail(ErrorKind::kUsage, "exa: the paper's profile does not hold parts that touch; take the compact one");
+Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress) {
   BlockList positions, labelled;
   ExaHeader header;
   if (model.labelled) {
@@ -192,15 +165,14 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   } else {
     DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
     DUBSAR_TRY(check_model(model, base));
-    add_positions(model, base, profile, positions, progress);
+    add_positions(model, base, positions, progress);
   }
-  header.profile = profile;
   header.frame = model.frame;
   header.dims = model.samples.dims;
   header.isovalue = model.samples.isovalue;
   header.offset_bits = model.samples.offset_bits;
   header.closed = model.samples.closed;
-  header.sums.far_sides = profile == ExaProfile::kCompact && ends_with_a_brick(model.samples.dims);
+  header.sums.far_sides = ends_with_a_brick(model.samples.dims);
   header.sums.embedded = model.mesh.embedded;
   header.vertices = model.mesh.vertex_count();
   header.quads = model.mesh.quad_count();
@@ -211,8 +183,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   header.tool = "dubsar " DUBSAR_VERSION;
   DUBSAR_TRY(find_normals(model, header, progress));
   const VertexAttributes& a = model.attributes;
-  header.shapes = profile == ExaProfile::kCompact && header.curvatures && !a.shape.empty() &&
-                  same(a.shape, shape_classes(a.k_min, a.k_max));
+  header.shapes = header.curvatures && !a.shape.empty() && same(a.shape, shape_classes(a.k_min, a.k_max));
 
   BlockList blocks;
   DUBSAR_ASSIGN(std::string text, exa_header_json(header));
@@ -222,10 +193,9 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
     blocks.add("PART", false, {std::move(table)});
   }
   if (!model.provenance.empty()) blocks.add("PROV", false, {model.provenance});
-  DUBSAR_TRY(add_samples(model.samples, profile, blocks, progress));
+  DUBSAR_TRY(add_samples(model.samples, blocks, progress));
   blocks.add(std::move(labelled));
   blocks.add(std::move(positions));
-  if (header.normals == ExaNormals::kQuantised) blocks.add("PNRM", false, *encode_paper_normals(a.normals, progress));
   if (header.normals == ExaNormals::kExact) {
     if (!a.normals.empty()) blocks.add("NORM", false, encode_floats(floats_of(a.normals), 3, progress));
     if (header.curvatures) {

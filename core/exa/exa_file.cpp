@@ -65,9 +65,8 @@ Result<SurfaceModel> decode_exa(std::string_view file, Progress& progress, const
   return decode_model(reader, options, progress);
 }
 
-Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel& model, Progress& progress,
-                           ExaProfile profile) {
-  DUBSAR_ASSIGN(const std::vector<ExaBlock> blocks, encode_exa(model, progress, profile));
+Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel& model, Progress& progress) {
+  DUBSAR_ASSIGN(const std::vector<ExaBlock> blocks, encode_exa(model, progress));
   const std::string head = exa_head(blocks);
   std::uint64_t total = head.size() + kExaEnd.size();
   for (const ExaBlock& block : blocks) total += block.bytes.size();

@@ -42,10 +42,8 @@ struct ExaInfo {
 
 /// Writes the whole file or none; an old one stays until then. Errors: kInternal (arrays of wrong length, connectivity
 /// that does not follow from the samples), kBadData (samples or positions that cannot be stored), kCannotCreate,
-/// kPermission, kIo, kCancelled. The same bytes for any number of threads. In the paper's profile, too, all comes back
-/// to the last bit; what settle_for_paper() (paper_profile.h) has not settled takes more space.
-Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel& model, Progress& progress,
-                           ExaProfile profile = ExaProfile::kCompact);
+/// kPermission, kIo, kCancelled. The same bytes for any number of threads.
+Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel& model, Progress& progress);
 
 /// As decode_salvaged() (exa_salvage.h). Errors as read_exa().
 struct SalvagedExa;
@@ -68,16 +66,14 @@ Result<ExaInfo> read_exa_info(const std::filesystem::path& path);
 Result<SurfaceModel> read_exa_level(const std::filesystem::path& path, int level, Progress& progress);
 
 /// The surface of the bricks that touch a box of grid points, open where they end, without attributes and escapes.
-/// Reads and decodes no other bricks. Errors as read_exa(); kUsage: the box lies outside the grid, or the file is of
-/// the paper's profile, which has no bricks.
+/// Reads and decodes no other bricks. Errors as read_exa(); kUsage: the box lies outside the grid.
 Result<SurfaceModel> read_exa_box(const std::filesystem::path& path, const GridBox& box, Progress& progress);
 
 /// Checks all sums of a file, known blocks or not, without decoding. Errors as read_exa().
 Result<void> check_exa_sums(const std::filesystem::path& path);
 
 /// The same from and to memory, for tests and fuzzers.
-Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress,
-                                         ExaProfile profile = ExaProfile::kCompact);
+Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress);
 Result<SurfaceModel> decode_exa(std::string_view file, Progress& progress, const ExaReadOptions& options = {});
 
 }  // namespace dubsar

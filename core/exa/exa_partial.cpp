@@ -45,9 +45,6 @@ Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& 
 
 Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Progress& progress) {
   DUBSAR_ASSIGN(const ExaHeader header, reader.header());
-  if (header.profile == ExaProfile::kPaper)
-    return fail(ErrorKind::kUsage,
-                "exa: a box of a file of the paper's profile was asked for, which has no bricks; recompress the file");
   const Dims& dims = header.dims;
   const std::array<std::int64_t, 3> size{dims.x, dims.y, dims.z};
   std::array<std::int64_t, 3> first{}, last{}, low{}, points{};  // bricks, points

@@ -10,17 +10,15 @@ namespace {
 struct BlockName {
   std::string_view type, name;
 };
-constexpr std::array<BlockName, 29> kBlockNames{
-    {{"HEAD", "header"},           {"PART", "partitions"},      {"PROV", "provenance"},
-     {"SIGC", "signs_8"},          {"SIG2", "signs_4"},         {"SIG1", "signs_2"},
-     {"SIG0", "signs_1"},          {"FACE", "face_decisions"},  {"OFFS", "offsets"},
-     {"ESCP", "escapes"},          {"POSN", "positions"},       {"NORM", "normals"},
-     {"CURV", "curvatures"},       {"SHAP", "shape"},           {"AMBO", "ao"},
-     {"EVID", "evidence"},         {"QPAR", "quad_partition"},  {"FILL", "fill_patches"},
-     {"FEVI", "fill_evidence"},    {"LABL", "labels"},          {"LOFS", "contact_offsets"},
-     {"LEVI", "contact_evidence"}, {"POCT", "paper_octets"},    {"PFCE", "paper_face_decisions"},
-     {"POFF", "paper_offsets"},    {"PPOS", "paper_places"},    {"PNRM", "paper_normals"},
-     {"PATT", "paper_words"},      {"PQEX", "paper_exceptions"}}};
+constexpr std::array<BlockName, 22> kBlockNames{
+    {{"HEAD", "header"},          {"PART", "partitions"},     {"PROV", "provenance"},
+     {"SIGC", "signs_8"},         {"SIG2", "signs_4"},        {"SIG1", "signs_2"},
+     {"SIG0", "signs_1"},         {"FACE", "face_decisions"}, {"OFFS", "offsets"},
+     {"ESCP", "escapes"},         {"POSN", "positions"},      {"NORM", "normals"},
+     {"CURV", "curvatures"},      {"SHAP", "shape"},          {"AMBO", "ao"},
+     {"EVID", "evidence"},        {"QPAR", "quad_partition"}, {"FILL", "fill_patches"},
+     {"FEVI", "fill_evidence"},   {"LABL", "labels"},         {"LOFS", "contact_offsets"},
+     {"LEVI", "contact_evidence"}}};
 }  // namespace
 
 std::string exa_block_name(std::string_view type) {

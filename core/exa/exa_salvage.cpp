@@ -119,8 +119,7 @@ Result<FoundDamage> find_damage(const ExaReader& reader, const ExaHeader& header
 Result<SalvagedExa> decode_salvaged(const ExaReader& reader, Progress& progress) {
   DUBSAR_ASSIGN(const ExaHeader header, reader.header());
   DUBSAR_ASSIGN(FoundDamage found, find_damage(reader, header));
-  if (found.needed || (header.profile == ExaProfile::kPaper && !found.bricks.signs.empty()))
-    return fail(ErrorKind::kBadData, "exa: nothing can be saved without {}", found.lost.front());
+  if (found.needed) return fail(ErrorKind::kBadData, "exa: nothing can be saved without {}", found.lost.front());
   const bool places = std::any_of(found.dropped.begin(), found.dropped.end(), can_be_left_out);
   ExaDamage& bricks = found.bricks;
   const bool damaged = places || !bricks.signs.empty() || !bricks.offsets.empty() || !bricks.faces.empty();

@@ -8,7 +8,6 @@
 #include "core/base/system/budget.h"
 #include "core/base/text/json_text.h"
 #include "core/exa/chunks.h"
-#include "core/exa/paper/paper_signs.h"
 
 namespace dubsar {
 namespace {
@@ -84,8 +83,6 @@ std::string_view normals_name(ExaNormals normals) {
       return "recomputed";
     case ExaNormals::kExact:
       return "exact";
-    case ExaNormals::kQuantised:
-      return "quantised";
   }
   return "";
 }
@@ -96,7 +93,6 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
       !finite(header.frame.input_voxel.mm))
     return fail(ErrorKind::kBadData, "exa: isovalue, scale, origin and voxel size must be finite to be stored");
   nlohmann::ordered_json json;
-  if (header.profile == ExaProfile::kPaper) json["profile"] = "paper";
   if (header.sums.embedded) json["cut"] = "envelope";
   json["dims"] = {header.dims.x, header.dims.y, header.dims.z};
   json["isovalue"] = static_cast<double>(header.isovalue);
@@ -146,11 +142,12 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   DUBSAR_ASSIGN(const Json json, parse_json(text, "exa: header"));
   Members members(json);
   ExaHeader header;
-  if (json.is_object() && json.contains("profile")) {
-    if (json["profile"] != "paper")
-      return fail(ErrorKind::kBadData, "exa: profile {} found, expected \"paper\" or none", json["profile"].dump());
-    header.profile = ExaProfile::kPaper;
-  }
+  if (json.is_object() && json.contains("profile"))
+    return fail(
+        ErrorKind::kBadData,
+        "exa: profile {} found, expected none: surfaces coded as in the paper, to compare, are not read any more; "
+        "process the scan again",
+        json["profile"].dump());
   if (json.is_object() && json.contains("cut")) {
     if (json["cut"] != "envelope")
       return fail(ErrorKind::kBadData,
@@ -215,7 +212,7 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
       return fail(ErrorKind::kBadData, "exa: a scale or voxel size is not positive");
   if (!std::isfinite(header.isovalue)) return fail(ErrorKind::kBadData, "exa: the isovalue is not finite");
   if (unit != "mm") return fail(ErrorKind::kBadData, "exa: voxel sizes in \"{}\" found, expected \"mm\"", unit);
-  for (const ExaNormals kind : {ExaNormals::kNone, ExaNormals::kRecomputed, ExaNormals::kExact, ExaNormals::kQuantised})
+  for (const ExaNormals kind : {ExaNormals::kNone, ExaNormals::kRecomputed, ExaNormals::kExact})
     if (normals == normals_name(kind)) header.normals = kind;
   if (normals != normals_name(header.normals))
     return fail(ErrorKind::kBadData, "exa: normals \"{}\" found, expected none, recomputed, exact or quantised",
@@ -235,12 +232,11 @@ std::uint64_t exa_memory_bound(const ExaHeader& header) {
   const auto rows = static_cast<std::uint64_t>((header.dims.y + 1) * (header.dims.z + 1));
   const auto items =
       static_cast<std::uint64_t>(header.vertices + header.quads + header.samples.edges + header.samples.faces);
-  const std::uint64_t lattices = header.profile == ExaProfile::kPaper ? paper_sign_memory(header.dims) : 0;
   const ExaContact contact = header.sums.contact.value_or(ExaContact());
   const std::uint64_t labelled =
       header.sums.contact ? words * 17 + items * 60 + static_cast<std::uint64_t>(contact.edges + contact.vertices) * 400
                           : 0;
-  return words * 9 + rows * 48 + items * 80 + labelled + lattices + (std::uint64_t{64} << 20);
+  return words * 9 + rows * 48 + items * 80 + labelled + (std::uint64_t{64} << 20);
 }
 
 Result<std::string> exa_partitions_json(const PartitionTable& partitions) {

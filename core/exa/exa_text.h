@@ -7,28 +7,16 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/base/text/enum_names.h"
 #include "core/parts/surface_model.h"
 #include "core/relief/curvature/curvature.h"
 
 namespace dubsar {
-
-/// How the surface is coded.
-enum class ExaProfile {
-  kCompact,  ///< adaptive codes behind networks, the smallest
-  kPaper,    ///< the paper's: static codes and words of constant codes, for comparison
-};
-
-inline constexpr EnumName<ExaProfile> kExaProfiles[] = {{ExaProfile::kCompact, "compact"},
-                                                        {ExaProfile::kPaper, "paper"}};
-static_assert(names_all(kExaProfiles, static_cast<std::size_t>(ExaProfile::kPaper) + 1));
 
 /// What the arrays of normals and curvatures are.
 enum class ExaNormals {
   kNone,
   kRecomputed,  ///< recomputed_normals() and principal_curvatures() of the mesh that was read
   kExact,       ///< stored
-  kQuantised,   ///< stored in the steps of an octahedron; curvatures are principal_curvatures() with them
 };
 
 /// Of a surface of parts that touch (labelled_surface.h).
@@ -49,7 +37,6 @@ struct MeshSums {
 };
 
 struct ExaHeader {
-  ExaProfile profile = ExaProfile::kCompact;
   GridFrame frame;
   Dims dims;
   float isovalue = 0.0f;
@@ -58,7 +45,7 @@ struct ExaHeader {
   std::int64_t vertices = 0, quads = 0;
   SampleCounts samples;  ///< as many offsets as edges, as many decisions as faces
   ExaNormals normals = ExaNormals::kNone;
-  bool curvatures = false;  ///< kRecomputed, kQuantised: k_min and k_max follow
+  bool curvatures = false;  ///< kRecomputed: k_min and k_max follow
   bool shapes = false;      ///< shape_classes() of the curvatures; not stored
   CurvatureMethod curvature = CurvatureMethod::kFit;
   std::string tool;  ///< program and version that wrote the file

@@ -125,14 +125,14 @@ struct Run {
     settling.curvature = options.curvature;
     SurfaceModel model = assemble(std::move(found.frame), std::move(found.sampled.samples), std::move(smoothed.mesh),
                                   std::move(smoothed.attributes));
-    return keep(settled, settle(std::move(model), settling, options.exa_profile, run));
+    return keep(settled, settle(std::move(model), settling, run));
   }
 
   /// How much of the surface is contact is known now. Where there is no room to trace it, it stays as smooth as
   /// patches.
   Result<void> close_contact() {
     SurfaceModel& model = separated.model;
-    if (separated.segment.nested && !separated.segment.enclosure_refused && options.exa_profile != ExaProfile::kPaper) {
+    if (separated.segment.nested && !separated.segment.enclosure_refused) {
       std::optional<std::string> smooth;
       if (options.contact) {
         plan.run.patches = static_cast<double>(patch_triangles(model));
@@ -223,10 +223,10 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   return result;
 }
 
-Result<void> write_product(const std::string& path, PipelineResult& result, ExaProfile profile, Progress& progress) {
+Result<void> write_product(const std::string& path, PipelineResult& result, Progress& progress) {
   StageClock clock;
   clock.start("write", "byte");
-  DUBSAR_ASSIGN(result.report.exa, write_exa(path, result.model, progress, profile));
+  DUBSAR_ASSIGN(result.report.exa, write_exa(path, result.model, progress));
   clock.finish(static_cast<std::int64_t>(result.report.exa.bytes));
   result.report.stages.push_back(clock.records().back());
   return {};

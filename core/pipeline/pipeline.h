@@ -25,11 +25,9 @@ struct PipelineOptions {
   SmoothOptions smooth;
   CurvatureMethod curvature = CurvatureMethod::kFit;
   SettleOptions settle;  ///< its curvature method is the one above
-  ExaProfile exa_profile = ExaProfile::kCompact;
   SegmentOptions segment;
   bool fill_holes = true;
-  /// By which the contact is traced in the scan, with filled holes only; none: it is as the smooth patches are. The
-  /// paper's profile holds no labels: the patches stay.
+  /// By which the contact is traced in the scan, with filled holes only; none: it is as the smooth patches are.
   std::optional<ContactRules> contact = ContactRules{};
   std::optional<OcclusionOptions> occlusion = OcclusionOptions{};  ///< none: no ambient light
 };
@@ -45,7 +43,7 @@ struct PipelineResult {
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress);
 
 /// Writes the model to `path` (as one more stage) and completes the report. An old file stays until the new one is
-/// whole. `profile`: that of the options of the run.
-Result<void> write_product(const std::string& path, PipelineResult& result, ExaProfile profile, Progress& progress);
+/// whole.
+Result<void> write_product(const std::string& path, PipelineResult& result, Progress& progress);
 
 }  // namespace dubsar

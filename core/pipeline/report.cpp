@@ -32,7 +32,6 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
       {"threshold", report.threshold.value},
       {"levels", name_in(kLevels, options.sample.levels)},
       {"offset_bits", options.sample.offset_bits},
-      {"exa_profile", name_in(kExaProfiles, options.exa_profile)},
       {"boundary", options.sample.closed ? "closed" : "open"},
       {"normal_iterations", options.smooth.normals.iterations},
       {"vertex_iterations", options.smooth.vertex_iterations},

@@ -1,7 +1,6 @@
 #include "core/pipeline/surface_stages.h"
 
 #include "core/base/system/log.h"
-#include "core/exa/paper/paper_profile.h"
 #include "core/exa/patches/patches.h"
 #include "core/exa/values/attributes.h"
 #include "core/extract/extract.h"
@@ -40,11 +39,10 @@ Result<SmoothedMesh> smooth_and_measure(QuadMesh mesh, const SmoothOptions& opti
   return smoothed;
 }
 
-Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, ExaProfile profile, StageRun run) {
+Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, StageRun run) {
   SettledModel settled{std::move(model), {}};
   run.clock.start("settle", "vertex");
-  DUBSAR_ASSIGN(settled.stats, profile == ExaProfile::kPaper ? settle_for_paper(settled.model, options, run.progress)
-                                                             : settle_for_exa(settled.model, options, run.progress));
+  DUBSAR_ASSIGN(settled.stats, settle_for_exa(settled.model, options, run.progress));
   run.clock.finish(settled.model.mesh.vertex_count());
   return settled;
 }

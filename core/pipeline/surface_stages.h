@@ -32,8 +32,8 @@ struct SettledModel {
   SurfaceModel model;
   SettleStats stats;
 };
-/// From here on the model is what a file of this profile will hold.
-Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, ExaProfile profile, StageRun run);
+/// From here on the model is what a file will hold.
+Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, StageRun run);
 
 struct SeparatedModel {
   SurfaceModel model;

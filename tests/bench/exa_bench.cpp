@@ -20,11 +20,12 @@
 #include "core/exa/chunks.h"
 #include "core/exa/exa_file.h"
 #include "core/exa/offsets/offsets.h"
-#include "core/exa/paper/paper_signs.h"
 #include "core/exa/signs/topology.h"
 #include "core/extract/extract.h"
 #include "tests/bench/exa_goals.h"
 #include "tests/bench/exa_peers.h"
+#include "tests/bench/paper/paper_figures.h"
+#include "tests/bench/paper/paper_signs.h"
 
 namespace {
 using namespace dubsar;
@@ -256,10 +257,18 @@ int main(int argc, char** argv) {
       large = true;
       continue;
     }
-    auto model = read_exa(argv[i], progress);
+    const bool as_paper = argv[i] == std::string("--paper") && i + 1 < argc;
+    auto model = read_exa(argv[as_paper ? ++i : i], progress);
     if (!model) {
       fmt::print(stderr, "{}\n", model.error().message);
       return exit_code(model.error().kind);
+    }
+    if (as_paper) {
+      if (const auto printed = print_paper_figures(std::move(*model), progress); !printed) {
+        fmt::print(stderr, "{}: {}\n", argv[i], printed.error().message);
+        return exit_code(printed.error().kind);
+      }
+      continue;
     }
     models.emplace_back(argv[i], std::move(*model));
     const std::string name = std::filesystem::path(argv[i]).filename().string();

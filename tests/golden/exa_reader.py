@@ -1056,132 +1056,6 @@ def loose_patch(decoder, counts, floats, vertices):
     return bits.view(np.float32).reshape(-1, 3), np.array(ids, dtype=np.uint32).reshape(-1, 3).tolist()
 
 
-# The paper's profile -------------------------------------------------------------------------------------------------
-
-
-class Bits:
-    """Numbers of any width, lowest bit first."""
-
-    def __init__(self, data):
-        self.value, self.at = int.from_bytes(data, "little"), 0
-
-    def get(self, count):
-        n = self.value >> self.at & ((1 << count) - 1)
-        self.at += count
-        return n
-
-    def number(self):
-        n = shift = 0
-        while True:
-            byte = self.get(8)
-            n |= (byte & 127) << shift
-            shift += 7
-            if byte < 128:
-                return n
-
-
-def corner_numbers(signs):
-    """Signs of the corners of every cell, x first; beyond the end all is outside. Arrays are [z, y, x]."""
-    p = np.pad(signs, ((0, 1), (0, 1), (0, 1))).astype(np.int64)
-    z, y, x = signs.shape
-    return sum(p[c >> 2:(c >> 2) + z, c >> 1 & 1:(c >> 1 & 1) + y, c & 1:(c & 1) + x] << c for c in range(8))
-
-
-@lru_cache(maxsize=None)
-def rank_table():
-    """Octets by rank for each number of corners."""
-    seen = np.zeros((256, 256), dtype=np.int64)
-    axis = (2 * np.arange(128) - 127) ** 2
-    squares = axis[:, None, None] + axis[None, :, None] + axis[None, None, :]
-    for radius in range(6, 61, 3):
-        sphere = (squares < 4 * radius * radius).astype(np.uint8)
-        corners = corner_numbers(sphere[::2, ::2, ::2])
-        octets = corner_numbers(sphere)[::2, ::2, ::2]
-        mixed = (corners > 0) & (corners < 255)
-        np.add.at(seen, (corners[mixed], octets[mixed]), 1)
-    return [sorted(range(256), key=lambda o: (-seen[c, o], bin(o ^ c).count("1"), o))
-            for c in range(256)]
-
-
-def decode_octets(chunks, dims):
-    levels = min(6, min(dims).bit_length() - 1)
-    step = 1 << levels
-    x, y, z = (-(-n // step) for n in dims)
-    raw = Bits(chunks[0])
-    lattice = np.array([raw.get(1) for _ in range(x * y * z)], dtype=np.uint8).reshape(z, y, x)
-    table = rank_table()
-    for chunk in chunks[1:]:
-        corners = corner_numbers(lattice)
-        coded = (corners > 0) & (corners < 255)
-        bits, at = Bits(chunk), 0
-        for _ in range(bits.number()):
-            at += bits.number()
-            coded.reshape(-1)[at] = True
-        octets = np.where(lattice > 0, 255, 0)
-        for place in zip(*np.nonzero(coded)):
-            rank = bits.get(2)
-            if rank == 3:
-                rank += bits.get(4)
-            if rank == 18:
-                rank += bits.get(8)
-            octets[place] = table[corners[place]][rank]
-        z, y, x = lattice.shape
-        lattice = np.zeros((2 * z, 2 * y, 2 * x), dtype=np.uint8)
-        for c in range(8):
-            lattice[c >> 2::2, c >> 1 & 1::2, c & 1::2] = octets >> c & 1
-    return lattice[:dims[2], :dims[1], :dims[0]]
-
-
-def raw_numbers(chunks, count, width):
-    bits = [Bits(chunk) for chunk in chunks]
-    return np.array([bits[i // 65536].get(width) for i in range(count)], dtype=np.uint16)
-
-
-WORDS = {8: list(zip((240, 120, 60, 30, 20, 15, 12, 10, 8, 7, 6, 5, 4, 3, 2, 1),
-                     (0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 20, 30, 32))),
-         16: list(zip((240, 124, 62, 41, 31, 24, 20, 17, 15, 13, 12, 11, 10, 8, 6, 3),
-                      (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 15, 20, 32)))}
-
-
-def word_numbers(chunks, count, columns, width):
-    """Sums of the differences in the words of each chunk."""
-    rows = []
-    for i, chunk in enumerate(chunks):
-        items, numbers = min(65536, count - 65536 * i), []
-        for at in range(0, len(chunk), width):
-            bits = Bits(chunk[at:at + width])
-            n, length = WORDS[width][bits.get(4)]
-            numbers += [bits.get(length) for _ in range(n)]
-        values = np.array(numbers[:items * columns], dtype=np.int64).reshape(items, columns)
-        rows.append(np.cumsum((values >> 1) ^ -(values & 1), axis=0))
-    return np.concatenate(rows) if rows else np.zeros((0, columns), dtype=np.int64)
-
-
-def octahedral_normals(steps):
-    x, y = steps[:, 0] / 255.0, steps[:, 1] / 255.0
-    z = 1.0 - np.abs(x) - np.abs(y)
-    fx, fy = (1.0 - np.abs(y)) * np.where(x < 0, -1.0, 1.0), (1.0 - np.abs(x)) * np.where(y < 0, -1.0, 1.0)
-    x, y = np.where(z < 0, fx + 0.0, x), np.where(z < 0, fy + 0.0, y)
-    length = np.sqrt(x * x + y * y + z * z)
-    return np.stack([x / length, y / length, z / length], axis=1).astype(np.float32)
-
-
-def decode_words(blocks, mesh, vertices):
-    has, words = blocks["PATT"][0][0], raw_numbers(blocks["PATT"][1:], vertices, 16)
-    found = {}
-    if has & 1:
-        found["shape"] = (words & 127).astype(np.uint8)
-    if has & 2:
-        found["ao"] = (words >> 7 & 63).astype(np.uint8)
-    if has & 4:
-        found["quad_partition"] = (words >> 13)[mesh.quads[:, 0]].astype(np.uint8)
-        bits, at = Bits(blocks["PQEX"][0]), 0
-        for _ in range(bits.number()):
-            at += bits.number()
-            found["quad_partition"][at] = bits.number()
-    return found
-
-
 def read(path):
     """Header, mesh and attributes of a file; raises ValueError where something is wrong."""
     blocks = read_blocks(Path(path).read_bytes())
@@ -1189,22 +1063,15 @@ def read(path):
     if "contact" in head:
         raise ValueError("labels, which this reader does not know")
     dims, bits = [int(n) for n in head["dims"]], head["offset_bits"]
-    paper = head.get("profile") == "paper"
-    signs = decode_octets(blocks["POCT"], dims) if paper else decode_signs(blocks, dims)
+    signs = decode_signs(blocks, dims)
     edges, ambiguous = item_order(signs, False), item_order(signs, True)
-    if paper:
-        joined, offsets = raw_numbers(blocks["PFCE"], head["faces"], 1), raw_numbers(blocks["POFF"], head["edges"], bits)
-    else:
-        far_sides = head.get("far_sides", False)
-        joined = decode_faces(blocks["FACE"], ambiguous, dims, far_sides)
-        offsets = decode_offsets(blocks["OFFS"], signs, edges, bits, far_sides)
+    far_sides = head.get("far_sides", False)
+    joined = decode_faces(blocks["FACE"], ambiguous, dims, far_sides)
+    offsets = decode_offsets(blocks["OFFS"], signs, edges, bits, far_sides)
     positions, quads, doubled = build_mesh(signs, edges, offsets, ambiguous, joined, bits, head["closed"])
     mesh = Neighbours(len(positions), quads, doubled)
     if "ESCP" in blocks:
         positions = decode_escapes(blocks["ESCP"], positions, mesh)
-    if "PPOS" in blocks:
-        steps = word_numbers(blocks["PPOS"], len(positions), 3, 8)
-        positions = (positions.astype(np.float64) + steps / 512.0).astype(np.float32)
     if "POSN" in blocks:
         positions = decode_floats(blocks["POSN"], len(positions), 3)
     result = {"header": head, "signs": signs, "offsets": offsets, "joined": joined, "positions": positions,
@@ -1214,8 +1081,6 @@ def read(path):
     for name in ("position_sum", "quad_sum"):
         if result[name] != head[name]:
             raise ValueError(f"{name} {result[name]} found, {head[name]} expected")
-    if "PATT" in blocks:
-        result.update(decode_words(blocks, mesh, len(positions)))
     for kind, name, decode, count in (("SHAP", "shape", decode_shape, len(positions)),
                                       ("AMBO", "ao", decode_light, len(positions)),
                                       ("EVID", "evidence", decode_enum, len(positions)),
@@ -1229,8 +1094,6 @@ def read(path):
                      for part, reverse, extra, triangles in patches), dtype=np.uint8)
         if "FEVI" in blocks:
             result["patch_evidence"] = decode_patch_evidence(blocks["FEVI"][0], patches)
-    if "PNRM" in blocks:
-        result["normals"] = octahedral_normals(word_numbers(blocks["PNRM"], len(positions), 2, 16))
     for kind, name, columns in (("NORM", "normals", 3), ("CURV", "curvatures", 2)):
         if kind in blocks:
             result[name] = decode_floats(blocks[kind], len(positions), columns)

@@ -122,9 +122,9 @@ inline std::string file_of(const std::vector<ExaBlock>& blocks, std::uint16_t ma
 
 inline std::string file_of(const std::vector<ExaBlock>& blocks) { return file_of(blocks, exa_major_of(blocks)); }
 
-inline std::vector<ExaBlock> encoded(const SurfaceModel& model, ExaProfile profile = ExaProfile::kCompact) {
+inline std::vector<ExaBlock> encoded(const SurfaceModel& model) {
   SilentProgress progress;
-  auto blocks = encode_exa(model, progress, profile);
+  auto blocks = encode_exa(model, progress);
   EXPECT_TRUE(blocks) << blocks.error().message;
   return blocks ? *blocks : std::vector<ExaBlock>();
 }

@@ -53,7 +53,7 @@ TEST_F(ForecastOfPhantoms, TheSurfaceAndItsFileAreThoseOfTheRun) {
     SilentProgress progress;
     auto made = run_pipeline(options, progress);
     ASSERT_TRUE(made) << made.error().message;
-    ASSERT_TRUE(write_product(folder_ / "a.exa", *made, options.exa_profile, progress));
+    ASSERT_TRUE(write_product(folder_ / "a.exa", *made, progress));
     const auto vertices = static_cast<double>(made->report.surface.vertices);
     EXPECT_NEAR(expected->run.vertices, vertices, 0.3 * vertices);
     const auto bytes = static_cast<double>(fs::file_size(folder_ / "a.exa"));

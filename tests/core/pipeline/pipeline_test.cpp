@@ -45,7 +45,7 @@ class Pipeline : public ::testing::Test {
     PipelineOptions wanted = options();
     if (!contact) wanted.contact.reset();
     DUBSAR_ASSIGN(PipelineResult result, run_pipeline(wanted, progress));
-    DUBSAR_TRY(write_product(out, result, wanted.exa_profile, progress));
+    DUBSAR_TRY(write_product(out, result, progress));
     return result;
   }
   static void expect_only_the_scan(const std::string& after) {
@@ -173,7 +173,7 @@ TEST_F(Pipeline, AGridOnTheDiskGivesTheSameBytes) {
       SilentProgress progress;
       auto result = run_pipeline(wanted, progress);
       ASSERT_TRUE(result) << result.error().message;
-      ASSERT_TRUE(write_product(folder_ / "d.exa", *result, wanted.exa_profile, progress));
+      ASSERT_TRUE(write_product(folder_ / "d.exa", *result, progress));
       bytes.push_back(read_file_bytes(folder_ / "d.exa").value());
     }
   EXPECT_TRUE(bytes[0] == bytes[1]);

@@ -106,7 +106,7 @@ void expect_kept_or_refused(const PipelineOptions& options, std::uint64_t limit,
     EXPECT_NE(result.error().message.find("of memory"), std::string::npos) << result.error().message;
     EXPECT_FALSE(stages.has("rays")) << "the scan was read, then: " << result.error().message;
   } else {
-    const auto written = write_product(out, *result, options.exa_profile, stages);
+    const auto written = write_product(out, *result, stages);
     EXPECT_TRUE(written) << written.error().message;
     ++made;
     std::string table;

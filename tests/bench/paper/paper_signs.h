@@ -1,5 +1,5 @@
 #pragma once
-// The sign code of the paper: octets of signs as ranks of a static table (docs/exa.md, "The paper's profile").
+// The sign code of the paper: octets of signs as ranks of a static table (paper_code.md).
 
 #include <span>
 #include <string>

@@ -1,8 +1,9 @@
-#include "core/exa/paper/paper_profile.h"
-
-#include "core/exa/paper/paper_signs.h"
-#include "core/exa/paper/paper_words.h"
+#include "core/exa/exa_text.h"
 #include "core/exa/signs/topology.h"
+#include "core/extract/extract.h"
+#include "tests/bench/paper/paper_profile.h"
+#include "tests/bench/paper/paper_signs.h"
+#include "tests/bench/paper/paper_words.h"
 #include "tests/core/exa/exa_test_models.h"
 #include "tests/core/exa/sign_volume.h"
 
@@ -18,7 +19,7 @@ const Dims kShapes[] = {{1, 1, 1},    {2, 1, 1},    {1, 33, 70},  {64, 64, 1},  
                         {3, 3, 3},    {31, 33, 32}, {5, 3, 9},    {32, 32, 32},  {33, 33, 33},
                         {34, 63, 65}, {129, 5, 2},  {70, 40, 97}, {128, 64, 20}, {257, 9, 130}};
 
-TEST(ExaPaper, TheSignCodeIsLosslessOnEveryLevelForAnyVolume) {
+TEST(PaperCode, TheSignCodeIsLosslessOnEveryLevelForAnyVolume) {
   std::mt19937 random(12);
   for (const Dims& dims : kShapes)
     for (const unsigned density : {0u, 2u, 500u, 1000u}) {
@@ -36,7 +37,7 @@ TEST(ExaPaper, TheSignCodeIsLosslessOnEveryLevelForAnyVolume) {
     }
 }
 
-TEST(ExaPaper, SpheresTakeWhatThePaperPrints) {
+TEST(PaperCode, SpheresTakeWhatThePaperPrints) {
   // Table 1: .869 bits a vertex of 248,426.
   const double c = 127.5;
   const BitVolume signs = volume({256, 256, 256}, [&](auto x, auto y, auto z) {
@@ -54,7 +55,7 @@ TEST(ExaPaper, SpheresTakeWhatThePaperPrints) {
   EXPECT_THAT(decode_signs_as_paper(cut, signs.dims()).error().message, HasSubstr("6 chunks of octets found, 7"));
 }
 
-TEST(ExaPaper, WordsHoldAnyNumbersAndWasteNoneOnSmallOnes) {
+TEST(PaperCode, WordsHoldAnyNumbersAndWasteNoneOnSmallOnes) {
   std::mt19937 random(4);
   for (const PaperWord word : {PaperWord::k64, PaperWord::k128})
     for (int round = 0; round < 60; ++round) {
@@ -77,27 +78,46 @@ TEST(ExaPaper, WordsHoldAnyNumbersAndWasteNoneOnSmallOnes) {
   for (const std::int32_t v : {0, 1, -1, 77, -12345, 2147483647, -2147483647 - 1}) EXPECT_EQ(unfolded(folded(v)), v);
 }
 
-TEST_F(ExaFile, ModelsInThePapersProfileComeBackToTheLastBit) {
+TEST_F(ExaFile, AllThatThePapersCodeHoldsOfASurfaceComesBackToTheLastBit) {
   unsigned seed = 100;
   for (const Dims& dims : {Dims{1, 1, 1}, Dims{30, 1, 17}, Dims{33, 20, 41}, Dims{65, 3, 2}})
-    for (const Kind kind : {Kind::kNoise, Kind::kBlob, Kind::kEmpty, Kind::kFull})
-      for (const bool settled : {false, true}) {
-        ++seed;
-        SurfaceModel model = sample_model(dims, kind, seed, seed % 2 == 0, 1 + static_cast<int>(seed % 16));
-        if (settled) {
-          ASSERT_TRUE(settle_for_paper(model, {}, progress_));
-        }
-        const auto path = folder_ / "a.exa";
-        ASSERT_TRUE(write_exa(path, model, progress_, ExaProfile::kPaper));
-        const auto read = read_exa(path, progress_);
-        ASSERT_TRUE(read) << read.error().message;
-        expect_equal(model, *read);
-        EXPECT_EQ(read_exa_info(path)->header.profile, ExaProfile::kPaper);
-        EXPECT_EQ(file_of(encoded(*read, ExaProfile::kPaper)), file_of(encoded(model, ExaProfile::kPaper)));
+    for (const Kind kind : {Kind::kNoise, Kind::kBlob, Kind::kEmpty, Kind::kFull}) {
+      ++seed;
+      SurfaceModel model = sample_model(dims, kind, seed, seed % 2 == 0, 1 + static_cast<int>(seed % 16));
+      ASSERT_TRUE(settle_for_paper(model, {}, progress_));
+      const QuadMesh base = build_quad_mesh(model.samples, progress_).value();
+
+      const auto places = encode_paper_positions(base.positions, model.mesh.positions, progress_);
+      ASSERT_TRUE(places);
+      std::vector<glm::vec3> positions = base.positions;
+      ASSERT_TRUE(decode_paper_positions(views_of(*places), positions, progress_));
+      EXPECT_TRUE(same_bytes(positions, model.mesh.positions));
+
+      const auto steps = encode_paper_normals(model.attributes.normals, progress_);
+      ASSERT_TRUE(steps);
+      const auto normals = decode_paper_normals(views_of(*steps), model.attributes.normals.size(), progress_);
+      ASSERT_TRUE(normals);
+      EXPECT_TRUE(same_bytes(*normals, model.attributes.normals));
+
+      const int bits = model.samples.offset_bits;
+      std::vector<std::uint16_t> offsets(model.samples.offsets.size());
+      const auto chunks = encode_paper_bits(model.samples.offsets, bits, progress_);
+      ASSERT_TRUE(decode_paper_bits(views_of(chunks), bits, "offsets", offsets));
+      EXPECT_EQ(offsets, model.samples.offsets);
+
+      const PaperWords words = encode_paper_words(model, true, progress_);
+      SurfaceModel back;
+      back.mesh = model.mesh;
+      if (!words.words.empty()) {
+        ASSERT_TRUE(decode_paper_words(views_of(words.words), views_of(words.exceptions), back));
       }
+      EXPECT_EQ(back.attributes.shape, model.attributes.shape);
+      EXPECT_EQ(back.attributes.ao, model.attributes.ao);
+      EXPECT_EQ(back.quad_partition, model.quad_partition);
+    }
 }
 
-TEST_F(ExaFile, SettlingForThePapersProfileTwiceIsTheSameAsOnce) {
+TEST_F(ExaFile, SettlingForThePapersCodeTwiceIsTheSameAsOnce) {
   SurfaceModel model = sample_model({30, 28, 26}, Kind::kBlob, 8);
   const SurfaceModel before = model;
   const auto stats = settle_for_paper(model, {}, progress_);
@@ -111,57 +131,13 @@ TEST_F(ExaFile, SettlingForThePapersProfileTwiceIsTheSameAsOnce) {
   ASSERT_TRUE(again);
   EXPECT_EQ(again->max_error_vox, 0.0);
   expect_equal(model, once);
-  const auto blocks = read_exa_info([&] {
-                        write_exa(folder_ / "a.exa", model, progress_, ExaProfile::kPaper).value();
-                        return folder_ / "a.exa";
-                      }())
-                          ->stats.blocks;
-  const auto has = [&](const char* name) {
-    return std::any_of(blocks.begin(), blocks.end(), [&](const ExaBlockStats& b) { return b.name == name; });
-  };
-  for (const char* name : {"paper_octets", "paper_offsets", "paper_places", "paper_normals", "paper_words"})
-    EXPECT_TRUE(has(name)) << name;
-  for (const char* name : {"positions", "normals", "curvatures", "shape", "ao", "signs_8"})
-    EXPECT_FALSE(has(name)) << name;
 }
 
-TEST_F(ExaFile, LevelsOfThePapersProfileAreThoseOfTheCompactOneAndBoxesAreRefused) {
-  const SurfaceModel model = sample_model({50, 41, 37}, Kind::kBlob, 9);
-  const auto compact = folder_ / "compact.exa", paper = folder_ / "paper.exa";
-  ASSERT_TRUE(write_exa(compact, model, progress_));
-  ASSERT_TRUE(write_exa(paper, model, progress_, ExaProfile::kPaper));
-  for (int level = 1; level <= 3; ++level) {
-    const auto a = read_exa_level(compact, level, progress_), b = read_exa_level(paper, level, progress_);
-    ASSERT_TRUE(a && b);
-    EXPECT_TRUE(same_bytes(a->mesh.positions, b->mesh.positions));
-    EXPECT_EQ(a->mesh.quads, b->mesh.quads);
-  }
-  const auto box = read_exa_box(paper, {{1, 1, 1}, {9, 9, 9}}, progress_);
-  ASSERT_FALSE(box);
-  EXPECT_EQ(box.error().kind, ErrorKind::kUsage);
-  EXPECT_THAT(box.error().message, HasSubstr("recompress"));
-}
-
-TEST_F(ExaFile, DamageOfThePapersProfileIsRefusedOrGivesTheSameMesh) {
-  SurfaceModel model = sample_model({14, 9, 10}, Kind::kBlob, 6);
-  ASSERT_TRUE(settle_for_paper(model, {}, progress_));
-  const std::vector<ExaBlock> blocks = encoded(model, ExaProfile::kPaper);
-  std::mt19937 random(2);
-  int refused = 0;
-  for (int round = 0; round < 800; ++round) {
-    std::vector<ExaBlock> damaged = blocks;
-    if (!damage_a_chunk(damaged, round, random)) continue;
-    const auto read = decode_exa(file_of(damaged), progress_);
-    if (!read) {
-      ASSERT_TRUE(read.error().kind == ErrorKind::kBadData || read.error().kind == ErrorKind::kTryAgain)
-          << read.error().message;
-      ++refused;
-      continue;
-    }
-    ASSERT_EQ(read->mesh.quads, model.mesh.quads);
-    ASSERT_TRUE(same_bytes(read->mesh.positions, model.mesh.positions));
-  }
-  EXPECT_GT(refused, 350);
+TEST_F(ExaFile, FilesThatAreCodedAsInThePaperAreRefusedWithWhatToDo) {
+  const auto read = parse_exa_header(R"({"profile":"paper","dims":[3,3,3]})", 1000);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(read.error().message, HasSubstr("process the scan again"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 // Small numbers in words of 64 or 128 bits, each filled with codes of one length that a selector names: Simple-8b (Anh
-// and Moffat 2010) and its wider brother (docs/exa.md, "The paper's profile").
+// and Moffat 2010) and its wider brother (paper_code.md).
 
 #include <cstdint>
 #include <span>

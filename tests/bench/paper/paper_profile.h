@@ -1,6 +1,6 @@
 #pragma once
 // The values of the paper's profile beside its signs: places and normals as small numbers in words of constant codes,
-// shape class, light and partition in 16 bits a vertex (docs/exa.md, "The paper's profile").
+// shape class, light and partition in 16 bits a vertex (paper_code.md).
 
 #include <cstdint>
 #include <glm/vec3.hpp>

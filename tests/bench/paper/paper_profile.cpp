@@ -1,4 +1,4 @@
-#include "core/exa/paper/paper_profile.h"
+#include "tests/bench/paper/paper_profile.h"
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,12 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/system/parallel.h"
-#include "core/exa/coding/bit_string.h"
-#include "core/exa/paper/paper_words.h"
 #include "core/exa/values/same_bits.h"
 #include "core/exa/values/vertex_order.h"
 #include "core/extract/extract.h"
 #include "core/relief/curvature/shape_class.h"
+#include "tests/bench/paper/bit_string.h"
+#include "tests/bench/paper/paper_words.h"
 
 namespace dubsar {
 namespace {

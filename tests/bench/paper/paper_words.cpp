@@ -1,10 +1,10 @@
-#include "core/exa/paper/paper_words.h"
+#include "tests/bench/paper/paper_words.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 
-#include "core/exa/coding/bit_string.h"
+#include "tests/bench/paper/bit_string.h"
 
 namespace dubsar {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/exa/paper/paper_signs.h"
+#include "tests/bench/paper/paper_signs.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "core/base/system/budget.h"
-#include "core/exa/coding/bit_string.h"
 #include "core/exa/signs/bit_spread.h"
+#include "tests/bench/paper/bit_string.h"
 
 namespace dubsar {
 namespace {
