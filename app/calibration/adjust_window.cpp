@@ -46,8 +46,8 @@ Result<void> LensTuner::use() {
   return {};
 }
 
-Command LensTuner::step(std::string name, std::string words, std::string key, std::function<void(Figures&)> change) {
-  Command out{std::move(name), "Panel", std::move(words), {{std::move(key)}}};
+Command LensTuner::step(std::string name, std::string key, std::function<void(Figures&)> change) {
+  Command out{std::move(name), "group.panel", {{std::move(key)}}};
   out.repeats = true;
   out.run = [this, change = std::move(change)](Editor& editor, const std::string&) -> Result<void> {
     const Figures before = now_;
@@ -64,24 +64,24 @@ Command LensTuner::step(std::string name, std::string words, std::string key, st
 }
 
 Command LensTuner::save() {
-  Command out{"panel_save", "Panel", "save the figures", {{"s"}}};
+  Command out{"panel_save", "group.panel", {{"s"}}};
   out.run = [this](Editor& editor, const std::string&) -> Result<void> {
     DUBSAR_ASSIGN(file_, save_adjustment(folder_, panel_, {now_.pitch, now_.slope, now_.center}));
     saved_ = true;
-    editor.place().say(fmt::format("saved: {}", text()));
+    editor.place().say(tr("say.saved", text()));
     return {};
   };
   return out;
 }
 
 std::vector<Command> LensTuner::commands() {
-  return {step("panel_left", "views to the left", "left", [](Figures& f) { f.center -= kCentreStep; }),
-          step("panel_right", "views to the right", "right", [](Figures& f) { f.center += kCentreStep; }),
-          step("pitch_more", "larger pitch", "up", [](Figures& f) { f.pitch *= 1.0 + kPitchStep; }),
-          step("pitch_less", "smaller pitch", "down", [](Figures& f) { f.pitch *= 1.0 - kPitchStep; }),
-          step("slope_more", "larger slope", "page_up", [](Figures& f) { f.slope *= 1.0 + kSlopeStep; }),
-          step("slope_less", "smaller slope", "page_down", [](Figures& f) { f.slope *= 1.0 - kSlopeStep; }),
-          step("panel_reset", "back to the figures that were there", "0", [this](Figures& f) { f = first_; }),
+  return {step("panel_left", "left", [](Figures& f) { f.center -= kCentreStep; }),
+          step("panel_right", "right", [](Figures& f) { f.center += kCentreStep; }),
+          step("pitch_more", "up", [](Figures& f) { f.pitch *= 1.0 + kPitchStep; }),
+          step("pitch_less", "down", [](Figures& f) { f.pitch *= 1.0 - kPitchStep; }),
+          step("slope_more", "page_up", [](Figures& f) { f.slope *= 1.0 + kSlopeStep; }),
+          step("slope_less", "page_down", [](Figures& f) { f.slope *= 1.0 - kSlopeStep; }),
+          step("panel_reset", "0", [this](Figures& f) { f = first_; }),
           save()};
 }
 

@@ -35,7 +35,7 @@ class LensTuner {
   };
   LensTuner() = default;
   Result<void> use();
-  Command step(std::string name, std::string words, std::string key, std::function<void(Figures&)> change);
+  Command step(std::string name, std::string key, std::function<void(Figures&)> change);
   Command save();
 
   std::shared_ptr<SinkCatalog> catalog_;

@@ -11,14 +11,11 @@ namespace {
 constexpr std::array<std::string_view, 3> kBackFaces{"show", "tint", "hide"};
 
 Command back_faces() {
-  Command out{"back_faces",
-              "Parts",
-              "the inner side of surfaces: as the outer one, in a colour of its own, or not at all",
-              {{"shift+q"}}};
-  out.argument = "show, tint or hide";
+  Command out{"back_faces", "group.parts", {{"shift+q"}}};
+  out.argument = "arg.back_faces";
   for (const std::string_view name : kBackFaces) out.values.emplace_back(name);
   out.closed = out.optional = true;
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     Document next = editor.document();
     const auto* const at = std::find(kBackFaces.begin(), kBackFaces.end(), next.style.back_faces);
     const std::size_t now = at == kBackFaces.end() ? 0 : static_cast<std::size_t>(at - kBackFaces.begin());

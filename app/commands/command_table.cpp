@@ -35,7 +35,14 @@ CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
 
 void CommandTable::add(Command command) {
   DUBSAR_CHECK(find(command.name) == nullptr && !command.name.empty() && command.run);
+  if (command.words.empty()) command.words = Text::find("command." + command.name);
+  DUBSAR_CHECK(!command.words.empty());
   commands_.push_back(std::move(command));
+}
+
+std::string argument_words(const Command& command, const std::string& argument) {
+  const std::string family(command.argument.id().substr(std::min<std::size_t>(4, command.argument.id().size())));
+  return tr_name(family, argument);
 }
 
 const Command* CommandTable::find(std::string_view name) const {
@@ -53,7 +60,7 @@ Result<void> CommandTable::check(std::string_view text) const {
                 did_you_mean(name, names));
   }
   if (argument.empty() && !command->argument.empty() && !command->optional)
-    return fail(ErrorKind::kUsage, "{}: nothing found after it, expected {}", name, command->argument);
+    return fail(ErrorKind::kUsage, "{}: nothing found after it, expected {}", name, command->argument.english());
   if (!argument.empty() && command->argument.empty())
     return fail(ErrorKind::kUsage, "{}: \"{}\" found after it, expected nothing", name, argument);
   if (!argument.empty() && command->closed &&

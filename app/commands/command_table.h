@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/commands/editor.h"
+#include "app/words/text.h"
 #include "core/base/result.h"
 
 namespace dubsar::app {
@@ -20,10 +21,9 @@ struct DefaultKey {
 
 struct Command {
   std::string name;                   ///< "turn_left"
-  std::string group;                  ///< heading it stands under: "View", "Sides" ...
-  std::string words;                  ///< "turn to the left"; with an argument "turn to the side that is called"
+  Text group;                         ///< heading it stands under: "View", "Sides" ...
   std::vector<DefaultKey> keys;       ///< with which it is called unless a mapping says otherwise
-  std::string argument{};             ///< what its argument is: "degrees"; empty: it takes none
+  Text argument{};                    ///< what its argument is: "degrees"; none: it takes none
   std::vector<std::string> values{};  ///< arguments worth offering; when `closed`, all there are
   bool closed = false;
   bool optional = false;                         ///< its argument may be left out
@@ -31,14 +31,18 @@ struct Command {
   bool steers = false;                           ///< moves the view, which somebody else may be holding
   std::function<bool(const Editor&)> enabled{};  ///< none: always
   std::function<Result<void>(Editor&, const std::string& argument)> run{};
+  Text words{};  ///< "turn to the left"; none: add() finds "command.NAME" of the table of texts
 };
+
+/// An argument as people read it: "upper left", "relief". What has no text, a number or a name, is itself.
+std::string argument_words(const Command& command, const std::string& argument);
 
 class CommandTable {
  public:
   /// The program's commands; `styles` are the names of the shadings there are.
   static CommandTable standard(const std::vector<std::string>& styles);
 
-  /// Names are told apart by their caller: two of the same are a mistake of ours.
+  /// Names are told apart by their caller: two of the same are a mistake of ours, as is one without a text.
   void add(Command command);
   std::span<const Command> all() const noexcept { return commands_; }
   /// Null: there is none of this name.
@@ -57,10 +61,10 @@ class CommandTable {
 std::pair<std::string_view, std::string> split_command(std::string_view text);
 
 /// Heading of those that concern the window and change no document.
-inline constexpr std::string_view kWindowGroup = "This window";
+inline constexpr Text kWindowGroup = "group.window";
 
 /// Heading of those that open files.
-inline constexpr std::string_view kFileGroup = "Files";
+inline constexpr Text kFileGroup = "group.files";
 
 /// Parts of the table, each in a file of its own.
 std::vector<Command> view_commands();                                        ///< turning, zooming, sides, undo and redo

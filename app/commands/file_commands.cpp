@@ -5,19 +5,17 @@
 
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
-#include "app/document/file_kinds.h"
 
 namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
-Command file_command(std::string name, std::string words, std::vector<DefaultKey> keys, std::string argument = {}) {
-  return {std::move(name), std::string(kFileGroup), std::move(words), std::move(keys), std::move(argument)};
+Command file_command(std::string name, std::vector<DefaultKey> keys, Text argument = {}) {
+  return {std::move(name), kFileGroup, std::move(keys), argument};
 }
 
 Command open() {
-  Command out = file_command("open", "open a surface; without a name: the folder to choose from", {{"ctrl+o"}},
-                             "FILE" + std::string(kSurfaceSuffixes));
+  Command out = file_command("open", {{"ctrl+o"}}, "arg.surface");
   out.optional = true;
   out.run = [](Editor& editor, const std::string& file) -> Result<void> {
     Choosing& choosing = editor.desk().choosing;
@@ -33,7 +31,7 @@ Command open() {
 }
 
 Command open_folder() {
-  Command out = file_command("open_folder", "choose from a folder", {}, "a folder, .. for the one above");
+  Command out = file_command("open_folder", {}, "arg.folder");
   out.values = {".."};
   out.run = [](Editor& editor, const std::string& folder) -> Result<void> {
     Choosing& choosing = editor.desk().choosing;
@@ -50,7 +48,7 @@ Command open_folder() {
 }
 
 Command open_recent() {
-  Command out = file_command("open_recent", "open one of the last files again", {}, "its number, 1 for the last one");
+  Command out = file_command("open_recent", {}, "arg.recent");
   out.values = {"1", "2", "3"};
   out.run = [](Editor& editor, const std::string& number) -> Result<void> {
     DUBSAR_ASSIGN(const double which, number_argument("open_recent", number, 1.0, 10.0));
@@ -61,16 +59,16 @@ Command open_recent() {
   return out;
 }
 
-Command step(std::string name, std::string words, int by, std::vector<DefaultKey> keys) {
-  Command out = file_command(std::move(name), std::move(words), std::move(keys));
+Command step(std::string name, int by, std::vector<DefaultKey> keys) {
+  Command out = file_command(std::move(name), std::move(keys));
   out.run = [by](Editor& editor, const std::string&) { return editor.place().switch_file(by); };
   return out;
 }
 
 Command stop_opening() {
-  Command out = file_command("stop_opening", "stop reading a file; what is shown stays", {});
+  Command out = file_command("stop_opening", {});
   out.run = [](Editor& editor, const std::string&) -> Result<void> {
-    if (!editor.place().stop_opening()) editor.place().say("no file is being read");
+    if (!editor.place().stop_opening()) editor.place().say(tr("say.no_file_is_read"));
     return {};
   };
   return out;
@@ -83,8 +81,8 @@ std::vector<Command> file_commands() {
   out.push_back(open());
   out.push_back(open_folder());
   out.push_back(open_recent());
-  out.push_back(step("next_file", "the next of the open files", 1, {{"ctrl+page_down"}}));
-  out.push_back(step("previous_file", "the open file before", -1, {{"ctrl+page_up"}}));
+  out.push_back(step("next_file", 1, {{"ctrl+page_down"}}));
+  out.push_back(step("previous_file", -1, {{"ctrl+page_up"}}));
   out.push_back(stop_opening());
   return out;
 }

@@ -15,10 +15,10 @@ bool has_film(const Editor& editor) { return !editor.document().keyframes.empty(
 
 /// What is seen becomes a keyframe; one of the same time is replaced.
 Command keyframe() {
-  Command out{"keyframe", "Film", "what is seen becomes a keyframe", {{"k"}}, "its time in seconds"};
+  Command out{"keyframe", "group.film", {{"k"}}, "arg.seconds"};
   out.optional = true;
   out.values = {"0", "5"};
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     Document next = editor.document();
     auto& keys = next.keyframes;
     double time = keys.empty() ? 0.0 : keys.back().time_s + kUsualStepS;
@@ -38,21 +38,21 @@ Command keyframe() {
   return out;
 }
 
-Command on_keyframe(std::string name, std::string words, void (*change)(Document&, std::size_t)) {
-  Command out{std::move(name), "Film", std::move(words), {}, "its number"};
+Command on_keyframe(std::string name, void (*change)(Document&, std::size_t)) {
+  Command out{std::move(name), "group.film", {}, "arg.number"};
   out.enabled = has_film;
-  out.run = [change, what = out.name, why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [change, what = out.name](Editor& editor, const std::string& text) -> Result<void> {
     DUBSAR_ASSIGN(const std::size_t at, place_argument(what, text, editor.document().keyframes.size()));
     Document next = editor.document();
     change(next, at);
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), what, Way::kGlide);
     return {};
   };
   return out;
 }
 
 Command play() {
-  Command out{"play", "Film", "show the film, or stop it", {{"shift+space"}}, "number of a keyframe to begin with"};
+  Command out{"play", "group.film", {{"shift+space"}}, "arg.from_keyframe"};
   out.optional = true;
   out.enabled = [](const Editor& editor) { return editor.document().keyframes.size() > 1; };
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
@@ -66,10 +66,9 @@ Command play() {
 
 /// Looks change places, times stay: a move back undoes it.
 Command move_keyframe() {
-  Command out{
-      "move_keyframe", "Film", "bring a keyframe to another place of the film", {}, "its number and the place's"};
+  Command out{"move_keyframe", "group.film", {}, "arg.number_place"};
   out.enabled = has_film;
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const auto [which, where] = first_word(text);
     Document next = editor.document();
     auto& keys = next.keyframes;
@@ -90,10 +89,9 @@ Command move_keyframe() {
 
 /// The keyframes behind it go on as they did, earlier or later.
 Command keyframe_seconds() {
-  Command out{
-      "keyframe_seconds", "Film", "how long it takes from a keyframe to the next", {}, "its number and seconds"};
+  Command out{"keyframe_seconds", "group.film", {}, "arg.number_seconds"};
   out.enabled = [](const Editor& editor) { return editor.document().keyframes.size() > 1; };
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const auto [which, seconds] = first_word(text);
     Document next = editor.document();
     auto& keys = next.keyframes;
@@ -111,11 +109,11 @@ Command keyframe_seconds() {
 }
 
 Command write_film() {
-  Command out{"write_film", "Film", "write the film into a file, for dubsar animate", {}, "FILE.json"};
+  Command out{"write_film", "group.film", {}, "arg.json"};
   out.enabled = has_film;
   out.run = [](Editor& editor, const std::string& path) -> Result<void> {
     DUBSAR_TRY(write_marks(path, format_film(editor.document().keyframes)));
-    editor.place().say("written: " + path);
+    editor.place().say(tr("say.written", path));
     return {};
   };
   return out;
@@ -126,15 +124,15 @@ Command write_film() {
 std::vector<Command> film_commands() {
   std::vector<Command> out;
   out.push_back(keyframe());
-  out.push_back(on_keyframe("go_to_keyframe", "look as a keyframe does",
+  out.push_back(on_keyframe("go_to_keyframe",
                             [](Document& next, std::size_t at) { show_keyframe(next, Keyframe(next.keyframes[at])); }));
   out.back().steers = true;
-  out.push_back(on_keyframe("delete_keyframe", "take a keyframe away", [](Document& next, std::size_t at) {
+  out.push_back(on_keyframe("delete_keyframe", [](Document& next, std::size_t at) {
     next.keyframes.erase(next.keyframes.begin() + static_cast<std::ptrdiff_t>(at));
   }));
-  out.push_back(on_keyframe(
-      "replace_keyframe", "what is seen takes the place of a keyframe",
-      [](Document& next, std::size_t at) { next.keyframes[at] = keyframe_of(next, next.keyframes[at].time_s); }));
+  out.push_back(on_keyframe("replace_keyframe", [](Document& next, std::size_t at) {
+    next.keyframes[at] = keyframe_of(next, next.keyframes[at].time_s);
+  }));
   out.push_back(move_keyframe());
   out.push_back(keyframe_seconds());
   out.push_back(play());

@@ -1,5 +1,7 @@
 #include "app/commands/key_table.h"
 
+#include "app/words/text.h"
+
 namespace dubsar::app {
 
 std::string key_chord(const InputEvent& event) {
@@ -19,11 +21,13 @@ std::string key_words(std::string_view chord) {
     const std::size_t plus = chord.size() > 1 ? chord.find('+', 1) : std::string_view::npos;
     std::string word(chord.substr(0, plus));
     chord.remove_prefix(plus == std::string_view::npos ? chord.size() : plus + 1);
-    bool begins = true;
+    const Text known = Text::find("key." + word);
+    bool begins = known.empty();
+    if (!begins) word = tr(known);
     for (char& c : word) {
       if (c == '_') c = ' ';
       if (begins && c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-      begins = c == ' ';
+      begins = known.empty() && c == ' ';
     }
     out += (first ? "" : "+") + word;
   }

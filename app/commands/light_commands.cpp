@@ -9,8 +9,8 @@ namespace {
 constexpr double kElevationDeg = 15.0, kPeriodS = 8.0;
 
 Command sweep() {
-  Command out{"sweep", "Light", "the light goes round, or stands still again", {{"shift+r"}}};
-  out.argument = "how high in degrees, and seconds for one round";
+  Command out{"sweep", "group.light", {{"shift+r"}}};
+  out.argument = "arg.sweep";
   out.values = {"15 8", "30 20"};
   out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {

@@ -15,14 +15,14 @@ constexpr std::array<std::string_view, 8> kCompass{"top",    "upper_right", "rig
 constexpr double kUnpackStep = 0.05;
 
 Command light_from() {
-  Command out{"light_from", "Light", "raking light from one of eight directions", {}};
-  out.argument = "a direction";
+  Command out{"light_from", "group.light", {}};
+  out.argument = "arg.direction";
   for (std::size_t i = 0; i < kCompass.size(); ++i) {
     out.values.emplace_back(kCompass[i]);
     out.keys.push_back({fmt::format("alt+{}", i + 1), std::string(kCompass[i])});
   }
   out.closed = out.steers = true;
-  out.run = [why = out.words](Editor& editor, const std::string& name) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& name) -> Result<void> {
     Document next = editor.document();
     const auto* const at = std::find(kCompass.begin(), kCompass.end(), name);
     next.light = {45.0 * static_cast<double>(at - kCompass.begin()), kRakingDeg};
@@ -33,11 +33,11 @@ Command light_from() {
 }
 
 Command light() {
-  Command out{"light", "Light", "light from anywhere", {}};
-  out.argument = "azimuth,elevation in degrees";
+  Command out{"light", "group.light", {}};
+  out.argument = "arg.light";
   out.values = {"315,25", "0,90"};
   out.steers = true;
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const std::size_t comma = std::min(text.find(','), text.size());
     DUBSAR_ASSIGN(const double azimuth, number_argument("light", text.substr(0, comma), 0.0, 360.0));
     DUBSAR_ASSIGN(const double elevation,
@@ -51,11 +51,11 @@ Command light() {
 }
 
 Command style(std::vector<std::string> names) {
-  Command out{"style", "Style", "colours and shades of the surface", {}};
-  out.argument = "a style";
+  Command out{"style", "group.style", {}};
+  out.argument = "arg.style";
   out.values = std::move(names);
   out.closed = true;
-  out.run = [why = out.words](Editor& editor, const std::string& name) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& name) -> Result<void> {
     Document next = editor.document();
     next.style.name = name;
     editor.change(std::move(next), why);
@@ -65,8 +65,8 @@ Command style(std::vector<std::string> names) {
 }
 
 Command next_style(std::vector<std::string> names) {
-  Command out{"next_style", "Style", "the next style", {{"s"}}};
-  out.run = [names = std::move(names), why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"next_style", "group.style", {{"s"}}};
+  out.run = [names = std::move(names), why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     const auto at = std::find(names.begin(), names.end(), next.style.name);
     next.style.name = names[at == names.end() ? 0 : static_cast<std::size_t>(at + 1 - names.begin()) % names.size()];
@@ -77,8 +77,8 @@ Command next_style(std::vector<std::string> names) {
 }
 
 Command occlusion() {
-  Command out{"occlusion", "Style", "dark hollows on or off", {{"o"}}};
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"occlusion", "group.style", {{"o"}}};
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     next.style.occlusion = !next.style.occlusion;
     editor.change(std::move(next), why);
@@ -88,8 +88,8 @@ Command occlusion() {
 }
 
 Command evidence() {
-  Command out{"evidence", "Style", "mark what the scan does not show, or not", {{"e"}}};
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"evidence", "group.style", {{"e"}}};
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     next.style.evidence = !next.style.evidence;
     editor.change(std::move(next), why);
@@ -99,10 +99,10 @@ Command evidence() {
 }
 
 Command strength() {
-  Command out{"strength", "Style", "how strong a style's colours are, in percent", {}};
-  out.argument = "0 to 200";
+  Command out{"strength", "group.style", {}};
+  out.argument = "arg.to_200";
   out.values = {"0", "100", "200"};
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     DUBSAR_ASSIGN(const double percent, number_argument("strength", text, 0.0, 200.0));
     Document next = editor.document();
     next.style.strength = 0.01 * percent;
@@ -121,11 +121,11 @@ Result<Part*> part_of(std::string_view command, Document& document, const std::s
 }
 
 Command part_opacity() {
-  Command out{"part_opacity", "Parts", "how much of a part one sees, in percent", {}};
-  out.argument = "its number or name, and 0 to 100";
+  Command out{"part_opacity", "group.parts", {}};
+  out.argument = "arg.part_percent";
   out.values = {"1 50", "1 100"};
   out.enabled = [](const Editor& editor) { return !editor.document().parts.empty(); };
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const std::size_t space = std::min(text.rfind(' '), text.size());
     DUBSAR_ASSIGN(const double percent,
                   number_argument("part_opacity", text.substr(std::min(space + 1, text.size())), 0.0, 100.0));
@@ -139,11 +139,11 @@ Command part_opacity() {
 }
 
 Command part_colour() {
-  Command out{"part_colour", "Parts", "paint a part in a colour, or as the style has it", {}};
-  out.argument = "its number or name, and RRGGBB or none";
+  Command out{"part_colour", "group.parts", {}};
+  out.argument = "arg.part_colour";
   out.values = {"1 d9a441", "1 none"};
   out.enabled = [](const Editor& editor) { return !editor.document().parts.empty(); };
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const std::size_t space = std::min(text.rfind(' '), text.size());
     const std::string colour = text.substr(std::min(space + 1, text.size()));
     unsigned value = 0xffffff;  // white: as the style has it
@@ -162,11 +162,11 @@ Command part_colour() {
 }
 
 Command part_offset() {
-  Command out{"part_offset", "Parts", "where a part stands beside its place in the scan", {}};
-  out.argument = "its number or name, and x,y,z in mm";
+  Command out{"part_offset", "group.parts", {}};
+  out.argument = "arg.part_offset";
   out.values = {"1 0,0,10", "1 0,0,0"};
   out.enabled = [](const Editor& editor) { return !editor.document().parts.empty(); };
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const std::size_t space = std::min(text.rfind(' '), text.size());
     std::string rest;
     DUBSAR_ASSIGN(const auto places,
@@ -181,12 +181,12 @@ Command part_offset() {
 }
 
 Command part() {
-  Command out{"part", "Parts", "a part on or off", {}};
-  out.argument = "its number or name";
+  Command out{"part", "group.parts", {}};
+  out.argument = "arg.part";
   out.values = {"1", "2", "3", "4"};
   for (const std::string& number : out.values) out.keys.push_back({"ctrl+" + number, number});
   out.enabled = [](const Editor& editor) { return editor.document().parts.size() > 1; };
-  out.run = [why = out.words](Editor& editor, const std::string& wanted) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& wanted) -> Result<void> {
     Document next = editor.document();
     std::size_t number = 0;
     std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
@@ -202,9 +202,9 @@ Command part() {
 }
 
 Command all_parts() {
-  Command out{"all_parts", "Parts", "all parts", {{"ctrl+0"}}};
+  Command out{"all_parts", "group.parts", {{"ctrl+0"}}};
   out.enabled = [](const Editor& editor) { return editor.document().parts.size() > 1; };
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     for (Part& each : next.parts) each.visible = true;
     editor.change(std::move(next), why);
@@ -214,15 +214,15 @@ Command all_parts() {
 }
 
 /// `step` 0: to the percentage that is said.
-Command unpack(std::string name, std::string words, double step, std::vector<DefaultKey> keys) {
-  Command out{std::move(name), "Parts", std::move(words), std::move(keys)};
+Command unpack(std::string name, double step, std::vector<DefaultKey> keys) {
+  Command out{std::move(name), "group.parts", std::move(keys)};
   if (step == 0.0) {
-    out.argument = "0 to 100";
+    out.argument = "arg.percent";
     out.values = {"0", "50", "100"};
   }
   out.repeats = step != 0.0;
   out.enabled = [](const Editor& editor) { return can_unpack(editor.document()); };
-  out.run = [step, what = out.name, why = out.words](Editor& editor, const std::string& argument) -> Result<void> {
+  out.run = [step, what = out.name](Editor& editor, const std::string& argument) -> Result<void> {
     Document next = editor.document();
     if (step == 0.0) {
       DUBSAR_ASSIGN(const double percent, number_argument(what, argument, 0.0, 100.0));
@@ -230,7 +230,7 @@ Command unpack(std::string name, std::string words, double step, std::vector<Def
     } else {
       next.unpack = std::clamp(next.unpack + step, 0.0, 1.0);
     }
-    editor.change(std::move(next), why);
+    editor.change(std::move(next), what);
     return {};
   };
   return out;
@@ -252,9 +252,9 @@ std::vector<Command> look_commands(const std::vector<std::string>& styles) {
   out.push_back(part_colour());
   out.push_back(part_offset());
   out.push_back(all_parts());
-  out.push_back(unpack("unpack", "how far the envelope is lifted, in percent", 0.0, {}));
-  out.push_back(unpack("unpack_more", "lift the envelope", kUnpackStep, {{"u"}}));
-  out.push_back(unpack("unpack_less", "put the envelope back", -kUnpackStep, {{"shift+u"}}));
+  out.push_back(unpack("unpack", 0.0, {}));
+  out.push_back(unpack("unpack_more", kUnpackStep, {{"u"}}));
+  out.push_back(unpack("unpack_less", -kUnpackStep, {{"shift+u"}}));
   return out;
 }
 

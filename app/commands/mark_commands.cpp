@@ -11,7 +11,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr std::string_view kMeasures = "Measures", kNotes = "Notes";
+constexpr Text kMeasures = "group.measures", kNotes = "group.notes";
 constexpr std::array<std::string_view, 8> kTools{"turn",    "distance", "angle", "depth",
                                                  "profile", "note",     "line",  "slice"};
 
@@ -71,7 +71,7 @@ Result<std::vector<SurfacePin>> pins_of(Editor& editor, const std::vector<glm::d
 }
 
 Command tool() {
-  Command out{"tool", std::string(kMeasures), "what a click does", {}, "a tool"};
+  Command out{"tool", kMeasures, {}, "arg.tool"};
   out.values.assign(kTools.begin(), kTools.end());
   out.keys = {{"v", "turn"},    {"d", "distance"}, {"a", "angle"}, {"w", "depth"},
               {"f", "profile"}, {"n", "note"},     {"i", "line"},  {"j", "slice"}};
@@ -80,17 +80,8 @@ Command tool() {
     Desk& desk = editor.desk();
     desk.tool = desk.tool == name ? "turn" : name;
     desk.pending.clear();
-    constexpr std::array<const char*, 8> kWords{"",
-                                                "Click two places: the distance between them.",
-                                                "Click three places: the angle at the second.",
-                                                "Click into a wedge: its depth below the surface around it.",
-                                                "Click two places: the section between them.",
-                                                "Click where the note belongs.",
-                                                "Click the beginning and the end of a line of text.",
-                                                "Click where the scan shall be cut."};
-    const auto* const at = std::find(kTools.begin(), kTools.end(), desk.tool);
-    if (const char* const words = kWords[static_cast<std::size_t>(at - kTools.begin())]; *words != '\0')
-      editor.place().say(words);
+    const Text hint = Text::find("hint." + desk.tool);
+    if (!hint.empty()) editor.place().say(tr(hint));
     return {};
   };
   return out;
@@ -98,7 +89,7 @@ Command tool() {
 
 /// What a click with a tool says.
 Command point() {
-  Command out{"point", std::string(kMeasures), "a place for the tool", {}, "x,y,z in mm of the scan"};
+  Command out{"point", kMeasures, {}, "arg.place"};
   out.enabled = [](const Editor& editor) { return editor.desk().tool != "turn"; };
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     std::string rest;
@@ -122,11 +113,12 @@ Command point() {
   return out;
 }
 
-Command measure(MeasureKind kind, std::string words) {
+Command measure(MeasureKind kind) {
   const std::string kind_name(measure_kind_name(kind));
-  Command out{"measure_" + kind_name, std::string(kMeasures), std::move(words), {}};
+  Command out{"measure_" + kind_name, kMeasures, {}};
   const std::size_t count = points_of(kind);
-  out.argument = fmt::format("{} place{} x,y,z in mm of the scan, and a name", count, count == 1 ? "" : "s");
+  constexpr std::array<Text, 3> kPlaces{"arg.place_name", "arg.two_places_name", "arg.three_places_name"};
+  out.argument = kPlaces[count - 1];
   out.run = [kind, count, what = out.name](Editor& editor, const std::string& text) -> Result<void> {
     std::string name;
     DUBSAR_ASSIGN(const auto points, points_argument(what, text, count, name));
@@ -138,25 +130,25 @@ Command measure(MeasureKind kind, std::string words) {
 
 /// Commands on one thing of a list, by its number.
 template <class List>
-Command on_list(std::string name, std::string_view group, std::string words, std::string argument, const List& list,
+Command on_list(std::string name, Text group, Text argument, const List& list,
                 std::function<void(Editor&, Document&, std::size_t, const std::string&)> change) {
-  Command out{std::move(name), std::string(group), std::move(words), {}, std::move(argument)};
+  Command out{std::move(name), group, {}, argument};
   out.enabled = [list](const Editor& editor) { return !(editor.document().*list).empty(); };
-  out.run = [list, change = std::move(change), what = out.name, why = out.words](
-                Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [list, change = std::move(change), what = out.name](Editor& editor,
+                                                                const std::string& text) -> Result<void> {
     const auto [number, rest] = first_word(text);
     DUBSAR_ASSIGN(const std::size_t at, place_argument(what, number, (editor.document().*list).size()));
     Document next = editor.document();
     change(editor, next, at, rest);
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), what, Way::kGlide);
     return {};
   };
   return out;
 }
 
-Command note(std::string name, std::string words, std::size_t count) {
-  Command out{std::move(name), std::string(kNotes), std::move(words), {}};
-  out.argument = fmt::format("{} place{} x,y,z in mm of the scan, and its text", count, count == 1 ? "" : "s");
+Command note(std::string name, std::size_t count) {
+  Command out{std::move(name), kNotes, {}};
+  out.argument = count == 1 ? Text("arg.place_text") : Text("arg.two_places_text");
   out.run = [count, what = out.name](Editor& editor, const std::string& text) -> Result<void> {
     std::string words_of_it;
     DUBSAR_ASSIGN(const auto points, points_argument(what, text, count, words_of_it));
@@ -168,7 +160,7 @@ Command note(std::string name, std::string words, std::size_t count) {
 }
 
 Command open_note() {
-  Command out{"open_note", std::string(kNotes), "open a note, or close it", {}, "its number"};
+  Command out{"open_note", kNotes, {}, "arg.number"};
   out.enabled = [](const Editor& editor) { return !editor.document().notes.empty(); };
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     DUBSAR_ASSIGN(const std::size_t at, place_argument("open_note", text, editor.document().notes.size()));
@@ -178,11 +170,11 @@ Command open_note() {
   return out;
 }
 
-Command write(std::string name, std::string_view group, std::string words, std::string (*format)(const Document&)) {
-  Command out{std::move(name), std::string(group), std::move(words), {}, "FILE.json"};
+Command write(std::string name, Text group, std::string (*format)(const Document&)) {
+  Command out{std::move(name), group, {}, "arg.json"};
   out.run = [format](Editor& editor, const std::string& path) -> Result<void> {
     DUBSAR_TRY(write_marks(path, format(editor.document())));
-    editor.place().say("written: " + path);
+    editor.place().say(tr("say.written", path));
     return {};
   };
   return out;
@@ -194,41 +186,40 @@ std::vector<Command> mark_commands() {
   std::vector<Command> out;
   out.push_back(tool());
   out.push_back(point());
-  out.push_back(measure(MeasureKind::kDistance, "distance of two places, straight and along the surface"));
-  out.push_back(measure(MeasureKind::kAngle, "angle at the second of three places"));
-  out.push_back(measure(MeasureKind::kDepth, "depth of a wedge below the surface around it"));
-  out.push_back(measure(MeasureKind::kProfile, "section between two places"));
+  out.push_back(measure(MeasureKind::kDistance));
+  out.push_back(measure(MeasureKind::kAngle));
+  out.push_back(measure(MeasureKind::kDepth));
+  out.push_back(measure(MeasureKind::kProfile));
   out.push_back(
-      on_list("name_measure", kMeasures, "name a measure", "its number and a name", &Document::measures,
+      on_list("name_measure", kMeasures, "arg.number_name", &Document::measures,
               [](Editor&, Document& next, std::size_t at, const std::string& name) { next.measures[at].name = name; }));
-  out.push_back(on_list("delete_measure", kMeasures, "take a measure away", "its number", &Document::measures,
+  out.push_back(on_list("delete_measure", kMeasures, "arg.number", &Document::measures,
                         [](Editor&, Document& next, std::size_t at, const std::string&) {
                           next.measures.erase(next.measures.begin() + static_cast<std::ptrdiff_t>(at));
                         }));
-  out.push_back(write("write_measures", kMeasures, "write the measures into a file (JSON)", format_measures));
-  out.push_back(note("add_note", "a note on the surface", 1));
-  out.push_back(note("add_line", "a text along a line of the surface", 2));
+  out.push_back(write("write_measures", kMeasures, format_measures));
+  out.push_back(note("add_note", 1));
+  out.push_back(note("add_line", 2));
   out.push_back(open_note());
-  out.push_back(on_list("note_text", kNotes, "what a note says", "its number and a text", &Document::notes,
+  out.push_back(on_list("note_text", kNotes, "arg.number_text", &Document::notes,
                         [](Editor& editor, Document& next, std::size_t at, const std::string& text) {
                           next.notes[at].text = text;
                           warn_of_patch(editor, next.notes[at]);
                         }));
   out.push_back(
-      on_list("note_label", kNotes, "the number of a note, as o. 5", "which one and its number", &Document::notes,
+      on_list("note_label", kNotes, "arg.number_label", &Document::notes,
               [](Editor&, Document& next, std::size_t at, const std::string& text) { next.notes[at].label = text; }));
   out.push_back(
-      on_list("go_to_note", kNotes, "look at a note as it was made", "its number", &Document::notes,
+      on_list("go_to_note", kNotes, "arg.number", &Document::notes,
               [](Editor&, Document& next, std::size_t at, const std::string&) { next.now = next.notes[at].camera; }));
   out.back().steers = true;
-  out.push_back(on_list("delete_note", kNotes, "take a note away", "its number", &Document::notes,
+  out.push_back(on_list("delete_note", kNotes, "arg.number", &Document::notes,
                         [](Editor& editor, Document& next, std::size_t at, const std::string&) {
                           next.notes.erase(next.notes.begin() + static_cast<std::ptrdiff_t>(at));
                           editor.desk().note = 0;
                         }));
-  out.push_back(write("write_notes", kNotes, "write the notes into a file (JSON)", format_notes));
-  out.push_back(
-      write("write_annotations", kNotes, "write the notes into a file (W3C Web Annotations)", format_annotations));
+  out.push_back(write("write_notes", kNotes, format_notes));
+  out.push_back(write("write_annotations", kNotes, format_annotations));
   return out;
 }
 

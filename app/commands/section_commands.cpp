@@ -37,9 +37,9 @@ void cut_side(Document& document, const Workplace::Reach& reach, double percent)
 }
 
 Command cut() {
-  Command out{"cut", "Cuts", "cut away from a side, in percent of the object", {}, "a side and 0 to 100"};
+  Command out{"cut", "group.cuts", {}, "arg.side_percent"};
   out.values = {"front 20", "left 50", "front 0"};
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const auto words = first_word(text);
     const std::string &side = words.first, &share = words.second;
     const auto* const at =
@@ -57,10 +57,10 @@ Command cut() {
 
 /// One number for all sides, or one for each: left, right, bottom, top, back, front.
 Command cut_box() {
-  Command out{"cut_box", "Cuts", "cut away from all six sides, in percent of the object", {}};
-  out.argument = "0 to 49, or six of them: left,right,bottom,top,back,front";
+  Command out{"cut_box", "group.cuts", {}};
+  out.argument = "arg.cut_box";
   out.values = {"10", "0,0,0,0,0,40", "0"};
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     std::array<double, 6> percent{};
     const bool all = text.find(',') == std::string::npos;
     std::string rest = text;
@@ -83,7 +83,7 @@ Command cut_box() {
 
 /// Dragging one is "cut SIDE PERCENT", again and again, as one step.
 Command cut_handles() {
-  Command out{"cut_handles", "Cuts", "a box round the object whose six sides are dragged, or none", {{"alt+h"}}};
+  Command out{"cut_handles", "group.cuts", {{"alt+h"}}};
   out.run = [](Editor& editor, const std::string&) -> Result<void> {
     bool& box = editor.desk().pointing.cut_box;
     box = !box;
@@ -94,8 +94,8 @@ Command cut_handles() {
 
 /// Whether what is cut through is filled.
 Command section() {
-  Command out{"section", "Cuts", "fill what is cut through, or look inside", {{"shift+x"}}};
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"section", "group.cuts", {{"shift+x"}}};
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     next.style.section = !next.style.section;
     editor.change(std::move(next), why);
@@ -105,8 +105,8 @@ Command section() {
 }
 
 Command cut_here() {
-  Command out{"cut_here", "Cuts", "cut through the middle, across the view", {{"h"}}};
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"cut_here", "group.cuts", {{"h"}}};
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     const Workplace::Reach reach = editor.place().reach_to_viewer();
     Document next = editor.document();
     set_cut(next, reach.direction, 0.5 * (reach.from_mm + reach.to_mm));
@@ -116,11 +116,11 @@ Command cut_here() {
   return out;
 }
 
-Command move_cut(std::string name, std::string words, double step, std::vector<DefaultKey> keys) {
-  Command out{std::move(name), "Cuts", std::move(words), std::move(keys)};
+Command move_cut(std::string name, double step, std::vector<DefaultKey> keys) {
+  Command out{std::move(name), "group.cuts", std::move(keys)};
   out.repeats = true;
   out.enabled = [](const Editor& editor) { return !editor.document().clips.empty(); };
-  out.run = [step, why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  out.run = [step, why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     const Workplace::Reach reach = editor.place().reach_to_viewer();
     next.clips.back().distance_mm += step * (reach.to_mm - reach.from_mm);
@@ -131,9 +131,9 @@ Command move_cut(std::string name, std::string words, double step, std::vector<D
 }
 
 Command no_cuts() {
-  Command out{"no_cuts", "Cuts", "take all cuts away", {{"shift+h"}}};
+  Command out{"no_cuts", "group.cuts", {{"shift+h"}}};
   out.enabled = [](const Editor& editor) { return !editor.document().clips.empty(); };
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     next.clips.clear();
     editor.change(std::move(next), why);
@@ -143,9 +143,9 @@ Command no_cuts() {
 }
 
 Command fog() {
-  Command out{"fog", "Cuts", "how much the far side fades, in percent", {}, "0 to 100"};
+  Command out{"fog", "group.cuts", {}, "arg.percent"};
   out.values = {"0", "60"};
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     DUBSAR_ASSIGN(const double percent, number_argument("fog", text, 0.0, 100.0));
     Document next = editor.document();
     next.fog = 0.01 * percent;
@@ -170,8 +170,8 @@ std::vector<Command> section_commands() {
   out.push_back(cut_handles());
   out.push_back(section());
   out.push_back(cut_here());
-  out.push_back(move_cut("cut_deeper", "cut deeper", -kStep, {{"]"}}));
-  out.push_back(move_cut("cut_back", "cut less deep", kStep, {{"["}}));
+  out.push_back(move_cut("cut_deeper", -kStep, {{"]"}}));
+  out.push_back(move_cut("cut_back", kStep, {{"["}}));
   out.push_back(no_cuts());
   out.push_back(fog());
   return out;

@@ -11,10 +11,10 @@ namespace {
 constexpr std::array<std::string_view, 4> kColours{"designed", "blue-orange", "cividis", "grey"};
 
 Command blend(const std::vector<std::string>& names) {
-  Command out{"blend", "Style", "mix the style with another one, in percent of that", {{"shift+b", "raking 50"}}};
-  out.argument = "a style and 0 to 100";
+  Command out{"blend", "group.style", {{"shift+b", "raking 50"}}};
+  out.argument = "arg.style_percent";
   out.values = {"raking 50", "msii 30", "raking 0"};
-  out.run = [names, why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [names, why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const auto [name, share] = first_word(text);
     if (std::find(names.begin(), names.end(), name) == names.end())
       return fail(ErrorKind::kUsage, "blend: \"{}\" found, expected a style such as raking, and 0 to 100", name);
@@ -29,11 +29,11 @@ Command blend(const std::vector<std::string>& names) {
 }
 
 Command radiance() {
-  Command out{"radiance", "Style", "lift ridges out of hollows in every style, in percent", {{"r"}}};
-  out.argument = "0 to 200";
+  Command out{"radiance", "group.style", {{"r"}}};
+  out.argument = "arg.to_200";
   out.values = {"0", "100"};
   out.optional = true;
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     double percent = editor.document().style.radiance > 0 ? 0.0 : 100.0;
     if (!text.empty()) {
       DUBSAR_ASSIGN(percent, number_argument("radiance", text, 0.0, 200.0));
@@ -47,11 +47,11 @@ Command radiance() {
 }
 
 Command colours() {
-  Command out{"colours", "Style", "colours of curvature and of integral invariants", {{"shift+c"}}};
-  out.argument = "designed, blue-orange, cividis or grey";
+  Command out{"colours", "group.style", {{"shift+c"}}};
+  out.argument = "arg.colours";
   for (const std::string_view name : kColours) out.values.emplace_back(name);
   out.closed = out.optional = true;
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     Document next = editor.document();
     const auto* const at = std::find(kColours.begin(), kColours.end(), next.style.colours);
     const std::size_t now = at == kColours.end() ? 0 : static_cast<std::size_t>(at - kColours.begin());
@@ -63,7 +63,7 @@ Command colours() {
 }
 
 Command legend() {
-  Command out{"legend", "Style", "the legend of colours, or none", {{"shift+l"}}};
+  Command out{"legend", "group.style", {{"shift+l"}}};
   out.run = [](Editor& editor, const std::string&) -> Result<void> {
     editor.desk().legend = !editor.desk().legend;
     return {};

@@ -12,7 +12,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr std::string_view kSlicesGroup = "Slices";
+constexpr Text kSlicesGroup = "group.slices";
 constexpr std::array<std::string_view, 5> kLarge{"all", "x", "y", "z", "free"};
 constexpr double kLeastZoom = 0.2, kMostZoom = 200.0, kNearer = 1.25, kTurnDeg = 5.0;
 
@@ -28,10 +28,10 @@ void open_drawer(Editor& editor) {
 }
 
 /// What a command does to how slices lie.
-Command on_scan(std::string name, std::string words, std::string argument, std::vector<DefaultKey> keys,
+Command on_scan(std::string name, Text argument, std::vector<DefaultKey> keys,
                 std::function<Result<void>(Editor&, ScanView&, const std::string&)> act) {
-  Command out{std::move(name), std::string(kSlicesGroup), std::move(words), std::move(keys), std::move(argument)};
-  out.run = [act = std::move(act), why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  Command out{std::move(name), kSlicesGroup, std::move(keys), argument};
+  out.run = [act = std::move(act), why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     ScanView next = editor.document().scan;
     DUBSAR_TRY(act(editor, next, text));
     change(editor, next, why);
@@ -62,8 +62,8 @@ void zoom_by(ScanView& scan, double factor) {
 }
 
 Command slice_here() {
-  Command out{"slice_here", std::string(kSlicesGroup), "slice through the place under the pointer", {{"b"}}};
-  out.argument = "x,y,z in mm of the scan";
+  Command out{"slice_here", kSlicesGroup, {{"b"}}};
+  out.argument = "arg.place";
   out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     glm::dvec3 at(0.0);
@@ -78,8 +78,7 @@ Command slice_here() {
 }
 
 Command slice_step() {
-  Command out = on_scan("slice_step", "move a slice, in mm", "x, y, z or free, and how far",
-                        {{".", "free 0.1"}, {",", "free -0.1"}},
+  Command out = on_scan("slice_step", "arg.slice_step", {{".", "free 0.1"}, {",", "free -0.1"}},
                         [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
                           const auto [name, rest] = first_word(text);
                           DUBSAR_ASSIGN(const glm::dvec3 normal, normal_of("slice_step", name, scan));
@@ -92,8 +91,8 @@ Command slice_step() {
   return out;
 }
 
-Command slice_turn(std::string name, std::string words, double sign, std::string key) {
-  Command out = on_scan(std::move(name), std::move(words), "degrees", {{std::move(key)}},
+Command slice_turn(std::string name, double sign, std::string key) {
+  Command out = on_scan(std::move(name), "arg.degrees", {{std::move(key)}},
                         [sign](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
                           double degrees = kTurnDeg;
                           if (!text.empty()) {
@@ -112,38 +111,37 @@ Command slice_turn(std::string name, std::string words, double sign, std::string
 
 Command slice_grey() {
   Command out =
-      on_scan("slice_grey", "values of the scan that are black and white", "two values, or auto", {},
-              [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
-                if (text == "auto") {
-                  scan.black = scan.white = 0.0;
-                  return {};
-                }
-                const auto [black, white] = first_word(text);
-                DUBSAR_ASSIGN(scan.black, number_argument("slice_grey", black, -1e6, 1e6));
-                DUBSAR_ASSIGN(scan.white, number_argument("slice_grey", white, -1e6, 1e6));
-                if (scan.black == scan.white)
-                  return fail(ErrorKind::kUsage, "slice_grey: {} twice found, expected two values or auto", black);
-                return {};
-              });
+      on_scan("slice_grey", "arg.slice_grey", {}, [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
+        if (text == "auto") {
+          scan.black = scan.white = 0.0;
+          return {};
+        }
+        const auto [black, white] = first_word(text);
+        DUBSAR_ASSIGN(scan.black, number_argument("slice_grey", black, -1e6, 1e6));
+        DUBSAR_ASSIGN(scan.white, number_argument("slice_grey", white, -1e6, 1e6));
+        if (scan.black == scan.white)
+          return fail(ErrorKind::kUsage, "slice_grey: {} twice found, expected two values or auto", black);
+        return {};
+      });
   out.values = {"auto"};
   return out;
 }
 
 Command slice_large() {
-  Command out = on_scan("slice_large", "one slice alone, or all four", "which", {},
-                        [](Editor&, ScanView& scan, const std::string& name) -> Result<void> {
-                          const auto at = std::find(kLarge.begin(), kLarge.end(), name) - kLarge.begin();
-                          scan.large = scan.large == at ? 0 : static_cast<int>(at);
-                          return {};
-                        });
+  Command out =
+      on_scan("slice_large", "arg.which", {}, [](Editor&, ScanView& scan, const std::string& name) -> Result<void> {
+        const auto at = std::find(kLarge.begin(), kLarge.end(), name) - kLarge.begin();
+        scan.large = scan.large == at ? 0 : static_cast<int>(at);
+        return {};
+      });
   out.values.assign(kLarge.begin(), kLarge.end());
   out.closed = true;
   return out;
 }
 
 Command write_slice() {
-  Command out{"write_slice", std::string(kSlicesGroup), "write a slice into a file, a pixel for each voxel", {}};
-  out.argument = "FILE.png or FILE.tif, and x, y, z or free";
+  Command out{"write_slice", kSlicesGroup, {}};
+  out.argument = "arg.slice_file";
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     const std::size_t space = text.rfind(' ');
     const auto which =
@@ -174,46 +172,44 @@ void slice_through(Editor& editor, const SurfacePin& pin) {
 std::vector<Command> slice_commands() {
   std::vector<Command> out;
   out.push_back(slice_here());
-  out.push_back(on_scan("slice_at", "the place that all slices go through", "x,y,z in mm of the scan", {},
-                        [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
-                          DUBSAR_ASSIGN(scan.cursor_mm, place("slice_at", text));
-                          return {};
-                        }));
+  out.push_back(
+      on_scan("slice_at", "arg.place", {}, [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
+        DUBSAR_ASSIGN(scan.cursor_mm, place("slice_at", text));
+        return {};
+      }));
   out.push_back(slice_step());
-  out.push_back(slice_turn("slice_turn", "turn the free slice", 1.0, "alt+left"));
-  out.push_back(slice_turn("slice_turn_back", "turn the free slice back", -1.0, "alt+right"));
-  out.push_back(on_scan("slice_nearer", "slices nearer", "", {{"alt+up"}},
-                        [](Editor&, ScanView& scan, const std::string&) -> Result<void> {
-                          zoom_by(scan, kNearer);
-                          return {};
-                        }));
+  out.push_back(slice_turn("slice_turn", 1.0, "alt+left"));
+  out.push_back(slice_turn("slice_turn_back", -1.0, "alt+right"));
+  out.push_back(
+      on_scan("slice_nearer", {}, {{"alt+up"}}, [](Editor&, ScanView& scan, const std::string&) -> Result<void> {
+        zoom_by(scan, kNearer);
+        return {};
+      }));
   out.back().repeats = true;
-  out.push_back(on_scan("slice_farther", "slices farther", "", {{"alt+down"}},
-                        [](Editor&, ScanView& scan, const std::string&) -> Result<void> {
-                          zoom_by(scan, 1.0 / kNearer);
-                          return {};
-                        }));
+  out.push_back(
+      on_scan("slice_farther", {}, {{"alt+down"}}, [](Editor&, ScanView& scan, const std::string&) -> Result<void> {
+        zoom_by(scan, 1.0 / kNearer);
+        return {};
+      }));
   out.back().repeats = true;
-  out.push_back(on_scan("slice_zoom", "how near slices are: 100 is the whole surface", "percent", {},
-                        [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
-                          DUBSAR_ASSIGN(const double percent,
-                                        number_argument("slice_zoom", text, 100 * kLeastZoom, 100 * kMostZoom));
-                          zoom_by(scan, 0.01 * percent / scan.zoom);
-                          return {};
-                        }));
+  out.push_back(on_scan(
+      "slice_zoom", "arg.zoom_percent", {}, [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
+        DUBSAR_ASSIGN(const double percent, number_argument("slice_zoom", text, 100 * kLeastZoom, 100 * kMostZoom));
+        zoom_by(scan, 0.01 * percent / scan.zoom);
+        return {};
+      }));
   out.back().values = {"100", "400"};
-  out.push_back(on_scan("slice_centre", "what stands in the middle of the slices", "x,y,z in mm of the scan", {},
-                        [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
-                          DUBSAR_ASSIGN(scan.centre_mm, place("slice_centre", text));
-                          return {};
-                        }));
+  out.push_back(
+      on_scan("slice_centre", "arg.place", {}, [](Editor&, ScanView& scan, const std::string& text) -> Result<void> {
+        DUBSAR_ASSIGN(scan.centre_mm, place("slice_centre", text));
+        return {};
+      }));
   out.push_back(slice_grey());
   out.push_back(slice_large());
-  out.push_back(on_scan("next_slice", "one slice alone, the next, all four", "", {{"alt+s"}},
-                        [](Editor&, ScanView& scan, const std::string&) -> Result<void> {
-                          scan.large = (scan.large + 1) % static_cast<int>(kLarge.size());
-                          return {};
-                        }));
+  out.push_back(on_scan("next_slice", {}, {{"alt+s"}}, [](Editor&, ScanView& scan, const std::string&) -> Result<void> {
+    scan.large = (scan.large + 1) % static_cast<int>(kLarge.size());
+    return {};
+  }));
   out.push_back(write_slice());
   return out;
 }

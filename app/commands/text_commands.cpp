@@ -17,7 +17,7 @@ namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr std::string_view kTextGroup = "Text", kRecordGroup = "Tablet";
+constexpr Text kTextGroup = "group.text", kRecordGroup = "group.tablet";
 constexpr int kPatchPlaces = 9;  // of a line that are looked at: a patch of a tenth of it is seen
 
 bool has_lines(const Editor& editor) {
@@ -35,8 +35,8 @@ Result<std::size_t> line_argument(std::string_view what, const std::string& text
 }
 
 /// A new line below another, or half-way to the one above it.
-Command beside(std::string name, std::string words, double share) {
-  Command out{std::move(name), std::string(kTextGroup), std::move(words), {}, "its number"};
+Command beside(std::string name, double share) {
+  Command out{std::move(name), kTextGroup, {}, "arg.number"};
   out.enabled = has_lines;
   out.run = [share, what = out.name](Editor& editor, const std::string& text) -> Result<void> {
     DUBSAR_ASSIGN(const std::size_t at, line_argument(what, text, editor.document()));
@@ -53,9 +53,9 @@ Command beside(std::string name, std::string words, double share) {
 }
 
 Command translation() {
-  Command out{"line_translation", std::string(kTextGroup), "the translation of a line", {}, "its number and a text"};
+  Command out{"line_translation", kTextGroup, {}, "arg.number_text"};
   out.enabled = has_lines;
-  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
     const auto [number, rest] = first_word(text);
     DUBSAR_ASSIGN(const std::size_t at, line_argument("line_translation", number, editor.document()));
     Document next = editor.document();
@@ -66,28 +66,20 @@ Command translation() {
   return out;
 }
 
-/// "12 lines, 3 of them pinned, 9 wait".
+/// "12 lines read, 3 of them pinned already; 9 wait".
 std::string what_was_read(const AtfTaken& taken, const AtfFile& text) {
-  std::string out =
-      fmt::format("{} line{} read, {} of them pinned already", taken.lines, taken.lines == 1 ? "" : "s", taken.pinned);
-  if (taken.lines > taken.pinned) out += fmt::format("; {} wait: tool line pins them", taken.lines - taken.pinned);
-  std::size_t faults = 0;
-  std::string first;
-  for (const AtfFault& fault : check_atf(text)) {
-    if (fault.only_warning) continue;
-    if (faults++ == 0) first = fmt::format("line {}, column {}: {}", fault.line, fault.column, fault.message);
-  }
-  if (faults > 0) out += fmt::format("; {} fault{}, the first in {}", faults, faults == 1 ? "" : "s", first);
+  std::string out = tr("atf.read", taken.lines, taken.pinned);
+  if (taken.lines > taken.pinned) out += "; " + tr("atf.wait", taken.lines - taken.pinned);
+  std::vector<AtfFault> faults = check_atf(text);
+  std::erase_if(faults, [](const AtfFault& fault) { return fault.only_warning; });
+  if (!faults.empty())
+    out += "; " + tr("atf.faults", faults.size(), faults[0].line, faults[0].column, faults[0].message);
   return out;
 }
 
 Command read_atf_file() {
-  Command out{"read_atf",
-              std::string(kTextGroup),
-              "read a transliteration (ATF), whose lines wait to be pinned",
-              {},
-              "FILE.atf"};
-  out.run = [why = out.words](Editor& editor, const std::string& path) -> Result<void> {
+  Command out{"read_atf", kTextGroup, {}, "arg.atf"};
+  out.run = [why = out.name](Editor& editor, const std::string& path) -> Result<void> {
     DUBSAR_ASSIGN(const std::string bytes, read_text_file(path, KeptFile::kLargest));
     DUBSAR_ASSIGN(const AtfFile text,
                   text_of_atf(read_atf(bytes), editor.document().edition.record, fs::path(path).filename().string()));
@@ -128,30 +120,24 @@ Result<void> write_text(const std::string& path, const std::string& text) {
 }
 
 Command write_atf_file() {
-  Command out{"write_atf",
-              std::string(kTextGroup),
-              "write the text (ATF): lines that nobody changed stay as they were read",
-              {},
-              "FILE.atf"};
+  Command out{"write_atf", kTextGroup, {}, "arg.atf"};
   out.run = [](Editor& editor, const std::string& path) -> Result<void> {
     const Document& document = editor.document();
     DUBSAR_TRY(write_text(path, write_atf(atf_of(document))));
     const auto unnumbered = std::count_if(document.notes.begin(), document.notes.end(), [](const Note& note) {
       return is_text_line(note) && (!spot_of(note) || note.text.empty());
     });
-    editor.place().say(
-        "written: " + path +
-        (unnumbered > 0 ? fmt::format("; left out: {} without a text or a number such as o. 3", unnumbered) : ""));
+    editor.place().say(tr("say.written", path) + (unnumbered > 0 ? "; " + tr("atf.left_out", unnumbered) : ""));
     return {};
   };
   return out;
 }
 
 Command forget_atf() {
-  Command out{"forget_atf", std::string(kTextGroup), "lines that wait are forgotten; those that are pinned stay", {}};
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"forget_atf", kTextGroup, {}};
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     if (editor.document().edition.atf.empty()) {
-      editor.place().say("no transliteration was read in");
+      editor.place().say(tr("atf.none"));
       return {};
     }
     Document next = editor.document();
@@ -163,12 +149,11 @@ Command forget_atf() {
 }
 
 /// One member of the record; nothing after it takes it away.
-Command say_of_tablet(std::string name, std::string words, std::string argument, std::string TabletRecord::*member,
+Command say_of_tablet(std::string name, Text argument, std::string TabletRecord::*member,
                       Result<std::string> (*checked)(std::string_view) = nullptr) {
-  Command out{std::move(name), std::string(kRecordGroup), std::move(words), {}, std::move(argument)};
+  Command out{std::move(name), kRecordGroup, {}, argument};
   out.optional = true;
-  out.run = [member, checked, why = out.words, what = out.name](Editor& editor,
-                                                                const std::string& text) -> Result<void> {
+  out.run = [member, checked, what = out.name](Editor& editor, const std::string& text) -> Result<void> {
     std::string value = text;
     if (checked != nullptr && !text.empty()) {
       auto written = checked(text);
@@ -177,7 +162,7 @@ Command say_of_tablet(std::string name, std::string words, std::string argument,
     }
     Document next = editor.document();
     next.edition.record.*member = value;
-    editor.change(std::move(next), why);
+    editor.change(std::move(next), what);
     return {};
   };
   return out;
@@ -196,10 +181,7 @@ void warn_of_patch(Editor& editor, const Note& line) {
     if (pin && pin->inferred) ++inferred;
   }
   if (inferred == 0) return;
-  editor.place().say(
-      fmt::format("The scan does not show the surface under about {} % of line {} (hatched): what is not seen "
-                  "belongs in [ ].",
-                  100 * inferred / kPatchPlaces, line.label));
+  editor.place().say(tr("atf.patch", 100 * inferred / kPatchPlaces, line.label));
 }
 
 void add_text_line(Editor& editor, const std::vector<SurfacePin>& ends, std::string text) {
@@ -226,23 +208,20 @@ void add_text_line(Editor& editor, const std::vector<SurfacePin>& ends, std::str
 
 std::vector<Command> text_commands() {
   std::vector<Command> out;
-  out.push_back(beside("next_line", "the line below another one, at the same interval", 1.0));
-  out.push_back(beside("insert_line", "a line above another one, half-way to the one before it", -0.5));
+  out.push_back(beside("next_line", 1.0));
+  out.push_back(beside("insert_line", -0.5));
   out.push_back(translation());
   out.push_back(read_atf_file());
   out.push_back(write_atf_file());
   out.push_back(forget_atf());
-  out.push_back(say_of_tablet("museum_number", "the museum's number", "as AO 8295", &TabletRecord::museum_number));
-  out.push_back(
-      say_of_tablet("p_number", "the number of CDLI", "as P123456", &TabletRecord::p_number, catalogue_number));
-  out.push_back(say_of_tablet("title", "what publications call it", "a text", &TabletRecord::title));
-  out.push_back(say_of_tablet("institution", "where it is kept", "a name", &TabletRecord::institution));
-  out.push_back(say_of_tablet("rights", "who may do what with pictures and text", "a text", &TabletRecord::rights));
-  out.push_back(say_of_tablet("creator", "who makes the edition", "a name", &TabletRecord::creator));
-  out.push_back(say_of_tablet("language", "the language of the text", "as old assyrian, or akk-x-oldass",
-                              &TabletRecord::language, language_tag));
-  out.push_back(
-      say_of_tablet("translated", "the language of translations", "as en", &TabletRecord::translated, language_tag));
+  out.push_back(say_of_tablet("museum_number", "arg.museum_number", &TabletRecord::museum_number));
+  out.push_back(say_of_tablet("p_number", "arg.p_number", &TabletRecord::p_number, catalogue_number));
+  out.push_back(say_of_tablet("title", "arg.text", &TabletRecord::title));
+  out.push_back(say_of_tablet("institution", "arg.name", &TabletRecord::institution));
+  out.push_back(say_of_tablet("rights", "arg.text", &TabletRecord::rights));
+  out.push_back(say_of_tablet("creator", "arg.name", &TabletRecord::creator));
+  out.push_back(say_of_tablet("language", "arg.language", &TabletRecord::language, language_tag));
+  out.push_back(say_of_tablet("translated", "arg.translated", &TabletRecord::translated, language_tag));
   return out;
 }
 

@@ -13,26 +13,26 @@ namespace dubsar::app {
 namespace {
 
 /// "turn_left", "turn_left 1": about an axis of the screen.
-Command turn(std::string name, std::string words, const glm::dvec3& axis, std::vector<DefaultKey> keys) {
-  Command out{std::move(name), "View", std::move(words), std::move(keys), "degrees"};
+Command turn(std::string name, const glm::dvec3& axis, std::vector<DefaultKey> keys) {
+  Command out{std::move(name), "group.view", std::move(keys), "arg.degrees"};
   out.optional = out.repeats = out.steers = true;
-  out.run = [axis, what = out.name, why = out.words](Editor& editor, const std::string& argument) -> Result<void> {
+  out.run = [axis, what = out.name](Editor& editor, const std::string& argument) -> Result<void> {
     double degrees = editor.steps().turn_deg;
     if (!argument.empty()) {
       DUBSAR_ASSIGN(degrees, number_argument(what, argument, 0.0, 360.0));
     }
     Document next = editor.document();
     next.now.rotation = glm::normalize(turn_of(degrees * kRadPerDeg * axis) * next.now.rotation);
-    editor.change(std::move(next), why);
+    editor.change(std::move(next), what);
     return {};
   };
   return out;
 }
 
-Command zoom(std::string name, std::string words, bool in, std::vector<DefaultKey> keys) {
-  Command out{std::move(name), "View", std::move(words), std::move(keys)};
+Command zoom(std::string name, bool in, std::vector<DefaultKey> keys) {
+  Command out{std::move(name), "group.view", std::move(keys)};
   out.repeats = out.steers = true;
-  out.run = [in, why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  out.run = [in, why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     const double factor = in ? editor.steps().zoom : 1.0 / editor.steps().zoom;
     next.now.zoom *= factor;
@@ -43,11 +43,11 @@ Command zoom(std::string name, std::string words, bool in, std::vector<DefaultKe
 }
 
 /// Glides to the camera that `where` makes of the document.
-Command go(std::string name, std::string group, std::string words, std::vector<DefaultKey> keys,
+Command go(std::string name, Text group, std::vector<DefaultKey> keys,
            std::function<CameraPose(const Document&, const std::string&)> where) {
-  Command out{std::move(name), std::move(group), std::move(words), std::move(keys)};
+  Command out{std::move(name), group, std::move(keys)};
   out.steers = true;
-  out.run = [where = std::move(where), why = out.words](Editor& editor, const std::string& argument) -> Result<void> {
+  out.run = [where = std::move(where), why = out.name](Editor& editor, const std::string& argument) -> Result<void> {
     Document next = editor.document();
     next.now = where(next, argument);
     editor.change(std::move(next), why, Way::kGlide);
@@ -57,7 +57,7 @@ Command go(std::string name, std::string group, std::string words, std::vector<D
 }
 
 Command side() {
-  Command out = go("side", "Sides", "turn to a side",
+  Command out = go("side", "group.sides",
                    {{"1", "obverse"}, {"2", "bottom"}, {"3", "reverse"}, {"4", "top"}, {"5", "left"}, {"6", "right"}},
                    [](const Document& document, const std::string& name) {
                      const auto* const at = std::find(kSideNames.begin(), kSideNames.end(), name);
@@ -65,15 +65,15 @@ Command side() {
                      camera.rotation = turn_to(static_cast<Side>(at - kSideNames.begin()), document.home.rotation);
                      return camera;
                    });
-  out.argument = "a side";
+  out.argument = "arg.side";
   out.values.assign(kSideNames.begin(), kSideNames.end());
   out.closed = true;
   return out;
 }
 
 Command obverse_here() {
-  Command out{"obverse_here", "Sides", "what faces you now is the obverse, upright", {{"ctrl+home"}}};
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"obverse_here", "group.sides", {{"ctrl+home"}}};
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     next.home.rotation = nearest_square_turn(next.now.rotation);
     next.now.rotation = next.home.rotation;
@@ -85,14 +85,11 @@ Command obverse_here() {
 
 /// For where the writing misled the program. The home view turns with it, so that all sides count anew.
 Command upright() {
-  Command out{"upright",
-              "Sides",
-              "stand it upright: turn it half, left, right, or over to the other side",
-              {{"shift+home", "half"}, {"ctrl+shift+home", "over"}}};
-  out.argument = "which way";
+  Command out{"upright", "group.sides", {{"shift+home", "half"}, {"ctrl+shift+home", "over"}}};
+  out.argument = "arg.way";
   out.values = {"half", "left", "right", "over"};
   out.closed = true;
-  out.run = [why = out.words](Editor& editor, const std::string& way) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& way) -> Result<void> {
     const double s = std::sqrt(0.5);  // of quarters about the viewer's axis, counterclockwise; over: about the lines
     const glm::dquat turn = way == "half"    ? glm::dquat(0, 0, 0, 1)
                             : way == "left"  ? glm::dquat(s, 0, 0, s)
@@ -108,7 +105,7 @@ Command upright() {
 }
 
 Command history(const std::string& name, bool back, std::vector<DefaultKey> keys) {
-  Command out{name, "Back", name, std::move(keys)};
+  Command out{name, "group.back", std::move(keys)};
   out.repeats = out.steers = true;
   out.enabled = [back](const Editor& editor) {
     return (back ? editor.history().undo_depth() : editor.history().redo_depth()) > 0;
@@ -127,28 +124,28 @@ std::vector<Command> view_commands() {
   out.push_back(side());
   out.push_back(obverse_here());
   out.push_back(upright());
-  out.push_back(go("next_side", "Sides", "quarter turn to the next side", {{"space"}, {"puck1"}},
-                   [](const Document& document, const std::string&) {
-                     CameraPose camera = document.now;
-                     camera.rotation = glm::normalize(turn_to(Side::kLeft) * nearest_square_turn(camera.rotation));
-                     return camera;
-                   }));
-  out.push_back(go("reset", "View", "back to the first view", {{"home"}, {"puck2"}},
+  out.push_back(
+      go("next_side", "group.sides", {{"space"}, {"puck1"}}, [](const Document& document, const std::string&) {
+        CameraPose camera = document.now;
+        camera.rotation = glm::normalize(turn_to(Side::kLeft) * nearest_square_turn(camera.rotation));
+        return camera;
+      }));
+  out.push_back(go("reset", "group.view", {{"home"}, {"puck2"}},
                    [](const Document& document, const std::string&) { return document.home; }));
-  out.back().run = [why = out.back().words](Editor& editor, const std::string&) -> Result<void> {
+  out.back().run = [why = out.back().name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     set_view(next, home_of(next));
     editor.change(std::move(next), why, Way::kGlide);
     return {};
   };
-  out.push_back(turn("turn_left", "turn to the left", {0, -1, 0}, {{"left"}, {"shift+left", "1"}}));
-  out.push_back(turn("turn_right", "turn to the right", {0, 1, 0}, {{"right"}, {"shift+right", "1"}}));
-  out.push_back(turn("turn_up", "turn upwards", {-1, 0, 0}, {{"up"}, {"shift+up", "1"}}));
-  out.push_back(turn("turn_down", "turn downwards", {1, 0, 0}, {{"down"}, {"shift+down", "1"}}));
-  out.push_back(turn("roll_left", "roll to the left", {0, 0, 1}, {{"page_up"}, {"shift+page_up", "1"}}));
-  out.push_back(turn("roll_right", "roll to the right", {0, 0, -1}, {{"page_down"}, {"shift+page_down", "1"}}));
-  out.push_back(zoom("zoom_in", "nearer", true, {{"+"}, {"="}}));
-  out.push_back(zoom("zoom_out", "farther", false, {{"-"}}));
+  out.push_back(turn("turn_left", {0, -1, 0}, {{"left"}, {"shift+left", "1"}}));
+  out.push_back(turn("turn_right", {0, 1, 0}, {{"right"}, {"shift+right", "1"}}));
+  out.push_back(turn("turn_up", {-1, 0, 0}, {{"up"}, {"shift+up", "1"}}));
+  out.push_back(turn("turn_down", {1, 0, 0}, {{"down"}, {"shift+down", "1"}}));
+  out.push_back(turn("roll_left", {0, 0, 1}, {{"page_up"}, {"shift+page_up", "1"}}));
+  out.push_back(turn("roll_right", {0, 0, -1}, {{"page_down"}, {"shift+page_down", "1"}}));
+  out.push_back(zoom("zoom_in", true, {{"+"}, {"="}}));
+  out.push_back(zoom("zoom_out", false, {{"-"}}));
   out.push_back(history("undo", true, {{"backspace"}, {"ctrl+z"}}));
   out.push_back(history("redo", false, {{"ctrl+shift+z"}, {"ctrl+y"}}));
   return out;

@@ -4,21 +4,21 @@
 
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
+#include "app/words/language.h"
 
 namespace dubsar::app {
 namespace {
 
-Command plain(std::string name, std::string words, std::vector<DefaultKey> keys,
-              std::function<Result<void>(Editor&)> run) {
-  Command out{std::move(name), std::string(kWindowGroup), std::move(words), std::move(keys)};
+Command plain(std::string name, std::vector<DefaultKey> keys, std::function<Result<void>(Editor&)> run) {
+  Command out{std::move(name), kWindowGroup, std::move(keys)};
   out.run = [run = std::move(run)](Editor& editor, const std::string&) { return run(editor); };
   return out;
 }
 
 /// While the help lists the devices, numbers switch them.
 Command toggle_source() {
-  Command out{"toggle_source", std::string(kWindowGroup), "device on or off, while this help is shown", {}};
-  out.argument = "its number";
+  Command out{"toggle_source", kWindowGroup, {}};
+  out.argument = "arg.number";
   for (char number = '1'; number <= '9'; ++number) {
     out.values.emplace_back(1, number);
     out.keys.push_back({std::string(1, number), std::string(1, number)});
@@ -34,8 +34,8 @@ Command toggle_source() {
 
 /// One at a time; the one that is open is closed.
 Command drawer() {
-  Command out{"drawer", std::string(kWindowGroup), "panel", {}};
-  out.argument = "a panel";
+  Command out{"drawer", kWindowGroup, {}};
+  out.argument = "arg.panel";
   out.values = {"parts", "light", "style", "measures", "notes", "cuts", "slices", "film"};
   out.keys = {{"p", "parts"},       {"l", "light"}, {"t", "style"},        {"m", "measures"},
               {"shift+n", "notes"}, {"c", "cuts"},  {"shift+s", "slices"}, {"shift+k", "film"}};
@@ -50,8 +50,8 @@ Command drawer() {
 }
 
 Command picture() {
-  Command out{"picture", std::string(kWindowGroup), "write what is seen into a file", {{"f12"}}};
-  out.argument = "FILE.png or FILE.tif, and how many times the window's size";
+  Command out{"picture", kWindowGroup, {{"f12"}}};
+  out.argument = "arg.picture";
   out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     const std::size_t space = text.rfind(' ');
@@ -72,8 +72,7 @@ Command picture() {
 constexpr double kLeastScale = 0.5, kMostScale = 4.0;
 
 Command ui_scale() {
-  Command out{
-      "ui_scale", std::string(kWindowGroup), "size of letters and panels, in percent", {}, "50 to 400, or auto"};
+  Command out{"ui_scale", kWindowGroup, {}, "arg.ui_scale"};
   out.values = {"100", "150", "200", "auto"};
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     if (text == "auto") {
@@ -87,8 +86,24 @@ Command ui_scale() {
   return out;
 }
 
-Command scale_by(std::string name, std::string words, double factor, std::vector<DefaultKey> keys) {
-  Command out = plain(std::move(name), std::move(words), std::move(keys), [factor](Editor& editor) -> Result<void> {
+/// For people who read other words; commands keep their names.
+Command ui_language() {
+  Command out{"ui_language", kWindowGroup, {{"ctrl+l"}}, "arg.language_code"};
+  out.values = language_codes();
+  out.optional = true;
+  out.run = [](Editor& editor, const std::string& code) -> Result<void> {
+    const auto& all = language_codes();
+    const auto at = std::find(all.begin(), all.end(), language().code());
+    const std::size_t next = at == all.end() ? 0 : static_cast<std::size_t>(at - all.begin() + 1) % all.size();
+    DUBSAR_TRY(use_language(code.empty() ? all[next] : code));
+    editor.place().say(tr("say.language"));
+    return {};
+  };
+  return out;
+}
+
+Command scale_by(std::string name, double factor, std::vector<DefaultKey> keys) {
+  Command out = plain(std::move(name), std::move(keys), [factor](Editor& editor) -> Result<void> {
     double& scale = editor.desk().ui_scale;
     scale = std::clamp((scale > 0 ? scale : 1.0) * factor, kLeastScale, kMostScale);
     return {};
@@ -98,8 +113,8 @@ Command scale_by(std::string name, std::string words, double factor, std::vector
 }
 
 Command magnify() {
-  Command out{"magnify", std::string(kWindowGroup), "a magnifying glass under the pointer, or none", {{"g"}}};
-  out.argument = "2 to 8";
+  Command out{"magnify", kWindowGroup, {{"g"}}};
+  out.argument = "arg.magnify";
   out.values = {"2", "4", "8"};
   out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
@@ -115,8 +130,8 @@ Command magnify() {
 
 /// The state of now stays on the left while one goes on on the right.
 Command beside() {
-  Command out{"beside", std::string(kWindowGroup), "this state stays beside what comes next, or is put away", {{"y"}}};
-  out.argument = "linked: both seen from one place; apart: each as it is; none";
+  Command out{"beside", kWindowGroup, {{"y"}}};
+  out.argument = "arg.beside";
   out.values = {"linked", "apart", "none"};
   out.closed = out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
@@ -134,8 +149,8 @@ Command beside() {
 
 /// For scripts, which have no mouse.
 Command pointer() {
-  Command out{"pointer", std::string(kWindowGroup), "the pointer stands there", {}};
-  out.argument = "x,y in heights of the window from its middle";
+  Command out{"pointer", kWindowGroup, {}};
+  out.argument = "arg.pointer";
   out.values = {"0,0", "-0.2,0.1"};
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     const std::size_t comma = std::min(text.find(','), text.size());
@@ -168,7 +183,7 @@ Result<void> close(Editor& editor) {
     desk.drawer.clear();
   } else if (editor.has_work() && !desk.leaving) {
     desk.leaving = true;
-    editor.place().say("Esc again: end. What you measured and noted is kept, and here again next time.");
+    editor.place().say(tr("say.end"));
   } else {
     editor.place().end();
   }
@@ -179,50 +194,46 @@ Result<void> close(Editor& editor) {
 
 std::vector<Command> window_commands() {
   std::vector<Command> out;
-  out.push_back(plain("help", "this help", {{"f1"}, {"?"}}, [](Editor& editor) -> Result<void> {
+  out.push_back(plain("help", {{"f1"}, {"?"}}, [](Editor& editor) -> Result<void> {
     editor.desk().help = !editor.desk().help;
     return {};
   }));
   out.push_back(toggle_source());
-  out.push_back(
-      plain("next_display", "next display", {{"f2"}}, [](Editor& editor) { return editor.place().switch_display(1); }));
-  out.push_back(plain("previous_display", "display before", {{"f3"}},
-                      [](Editor& editor) { return editor.place().switch_display(-1); }));
-  out.push_back(plain("swap_eyes", "left and right eye exchanged, and back", {{"x"}},
-                      [](Editor& editor) { return editor.place().swap_eyes(); }));
-  out.push_back(plain("panels", "panels on or off", {{"tab"}}, [](Editor& editor) -> Result<void> {
+  out.push_back(plain("next_display", {{"f2"}}, [](Editor& editor) { return editor.place().switch_display(1); }));
+  out.push_back(plain("previous_display", {{"f3"}}, [](Editor& editor) { return editor.place().switch_display(-1); }));
+  out.push_back(plain("swap_eyes", {{"x"}}, [](Editor& editor) { return editor.place().swap_eyes(); }));
+  out.push_back(plain("panels", {{"tab"}}, [](Editor& editor) -> Result<void> {
     editor.desk().panels = !editor.desk().panels;
     return {};
   }));
   out.push_back(drawer());
-  out.push_back(plain("retry_sources", "look for missing devices now", {{"f5"}}, [](Editor& editor) -> Result<void> {
+  out.push_back(plain("retry_sources", {{"f5"}}, [](Editor& editor) -> Result<void> {
     editor.place().retry_sources();
     return {};
   }));
-  out.push_back(plain("recentre", "straight ahead is where you look now", {{"f6"}}, [](Editor& editor) -> Result<void> {
+  out.push_back(plain("recentre", {{"f6"}}, [](Editor& editor) -> Result<void> {
     editor.place().recentre_heads();
-    editor.place().say("straight ahead is where you look now");
+    editor.place().say(tr("command.recentre"));
     return {};
   }));
-  out.push_back(plain("fullscreen", "whole monitor, and back", {{"f11"}},
-                      [](Editor& editor) { return editor.place().toggle_fullscreen(); }));
-  out.push_back(plain("palette", "all commands, by typing", {{"ctrl+k"}}, [](Editor& editor) -> Result<void> {
+  out.push_back(plain("fullscreen", {{"f11"}}, [](Editor& editor) { return editor.place().toggle_fullscreen(); }));
+  out.push_back(plain("palette", {{"ctrl+k"}}, [](Editor& editor) -> Result<void> {
     editor.desk().palette = !editor.desk().palette;
     return {};
   }));
   out.push_back(ui_scale());
-  out.push_back(scale_by("letters_larger", "letters and panels larger", 1.1, {{"ctrl++"}, {"ctrl+="}}));
-  out.push_back(scale_by("letters_smaller", "letters and panels smaller", 1.0 / 1.1, {{"ctrl+-"}}));
+  out.push_back(ui_language());
+  out.push_back(scale_by("letters_larger", 1.1, {{"ctrl++"}, {"ctrl+="}}));
+  out.push_back(scale_by("letters_smaller", 1.0 / 1.1, {{"ctrl+-"}}));
   out.push_back(magnify());
-  out.push_back(plain("cursor", "a ring on the surface under the pointer, in its depth", {{"z"}},
-                      [](Editor& editor) -> Result<void> {
-                        editor.desk().pointing.cursor = !editor.desk().pointing.cursor;
-                        return {};
-                      }));
+  out.push_back(plain("cursor", {{"z"}}, [](Editor& editor) -> Result<void> {
+    editor.desk().pointing.cursor = !editor.desk().pointing.cursor;
+    return {};
+  }));
   out.push_back(pointer());
   out.push_back(beside());
   out.push_back(picture());
-  out.push_back(plain("close", "close what is open, lay down the tool, or end", {{"escape"}}, close));
+  out.push_back(plain("close", {{"escape"}}, close));
   return out;
 }
 

@@ -22,34 +22,32 @@ Result<void> take(Editor& editor, const Document& other, std::string_view why, c
   Document next = add_marks(editor.document(), other);
   const std::string more = marks_more(editor.document(), next);
   if (more.empty()) {
-    editor.place().say("nothing in " + from + " that is not here already");
+    editor.place().say(tr("say.nothing_new", from));
     return {};
   }
   editor.change(std::move(next), why, Way::kGlide);
-  editor.place().say(more + " from " + from +
-                     (places_hold ? std::string() : "; whether their places fit this surface is not known"));
+  editor.place().say(places_hold ? tr("say.taken_over", more, from) : tr("say.taken_over_doubtful", more, from));
   return {};
 }
 
 Command save_copy() {
-  Command out{
-      "save_copy", std::string(kFileGroup), "a copy of the work in a file, to keep or to send", {}, "FILE.json"};
+  Command out{"save_copy", kFileGroup, {}, "arg.json"};
   out.enabled = [](const Editor& editor) { return !editor.document().parts.empty(); };
   out.run = [](Editor& editor, const std::string& path) -> Result<void> {
     const Document& mine = editor.document();
     if (const auto there = load_work(path); there && !marks_more(mine, add_marks(mine, there->document)).empty())
       return fail(ErrorKind::kUsage, "cannot write {}: notes, measures or keyframes are there that are not here", path);
     DUBSAR_TRY(write_marks(path, format_document(mine)));
-    editor.place().say("written: " + path);
+    editor.place().say(tr("say.written", path));
     return {};
   };
   return out;
 }
 
 Command open_work() {
-  Command out{"open_work", std::string(kFileGroup), "notes, measures and films of a copy", {}, "FILE.json"};
+  Command out{"open_work", kFileGroup, {}, "arg.json"};
   out.enabled = [](const Editor& editor) { return !editor.document().parts.empty(); };
-  out.run = [why = out.words](Editor& editor, const std::string& path) -> Result<void> {
+  out.run = [why = out.name](Editor& editor, const std::string& path) -> Result<void> {
     DUBSAR_ASSIGN(const Work work, load_work(path));
     return take(editor, work.document, why, fs::path(path).filename().string(),
                 same_places(work.document.source, editor.document().source));
@@ -58,11 +56,10 @@ Command open_work() {
 }
 
 Command take_over() {
-  Command out{
-      "take_over", std::string(kFileGroup), "notes, measures and films of the surface that was here before", {}};
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"take_over", kFileGroup, {}};
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     if (editor.others().empty()) {
-      editor.place().say("no work of another surface was found here");
+      editor.place().say(tr("say.no_other_work"));
       return {};
     }
     Document all;
@@ -72,7 +69,7 @@ Command take_over() {
       places_hold = places_hold && other.same_scan;
     }
     const std::string first = fs::path(editor.others().front().file).filename().string();
-    return take(editor, all, why, editor.others().size() == 1 ? first : first + " and others", places_hold);
+    return take(editor, all, why, editor.others().size() == 1 ? first : tr("say.and_others", first), places_hold);
   };
   return out;
 }

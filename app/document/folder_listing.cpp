@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "app/document/file_kinds.h"
+#include "app/words/text.h"
 #include "core/base/text/lower_text.h"
 
 namespace dubsar::app {
@@ -22,7 +23,7 @@ FolderListing list_folder(const fs::path& folder) {
   out.folder = fs::absolute(folder, error).lexically_normal().string();
   fs::directory_iterator at(folder, fs::directory_options::skip_permission_denied, error);
   if (error) {
-    out.problem = fmt::format("{} cannot be looked into: {}", out.folder, error.message());
+    out.problem = tr("files.cannot_look", out.folder, error.message());
     return out;
   }
   for (const fs::directory_iterator end; at != end && out.entries.size() < kMostEntries; at.increment(error)) {
@@ -46,7 +47,7 @@ std::string size_words(std::int64_t bytes) {
   const auto size = static_cast<double>(bytes);
   if (bytes < 1000) return fmt::format("{} B", bytes);
   if (size < 1e6) return fmt::format("{:.0f} kB", size / 1e3);
-  return size < 1e9 ? fmt::format("{:.1f} MB", size / 1e6) : fmt::format("{:.1f} GB", size / 1e9);
+  return local_figures(size < 1e9 ? fmt::format("{:.1f} MB", size / 1e6) : fmt::format("{:.1f} GB", size / 1e9));
 }
 
 }  // namespace dubsar::app

@@ -6,6 +6,7 @@
 
 #include "app/document/document_fields.h"
 #include "app/document/document_file.h"
+#include "app/words/text.h"
 #include "core/base/files/file_fingerprint.h"
 
 namespace dubsar::app {
@@ -104,10 +105,6 @@ bool is_joined_otherwise(const std::string& member) {
   return member == "notes" || member == "measures" || member == "keyframes" || member == "now" || member == "source";
 }
 
-std::string count_text(std::size_t count, const char* name) {
-  return fmt::format("{} {}{}", count, name, count == 1 ? "" : "s");
-}
-
 template <class Thing>
 std::size_t more(const std::vector<Thing>& before, const std::vector<Thing>& after) {
   return static_cast<std::size_t>(std::count_if(after.begin(), after.end(), [&](const Thing& thing) {
@@ -151,17 +148,15 @@ Document join(const Document* base, const Document& mine, const Document& theirs
 Document add_marks(const Document& mine, const Document& theirs) { return join_marks(nullptr, mine, theirs); }
 
 std::string marks_more(const Document& before, const Document& after) {
-  const std::array<std::pair<std::size_t, const char*>, 3> counts{
-      {{more(before.notes, after.notes), "note"},
-       {more(before.measures, after.measures), "measure"},
-       {static_cast<std::size_t>(std::count_if(after.keyframes.begin(), after.keyframes.end(),
-                                               [&](const Keyframe& key) { return !has_look(before.keyframes, key); })),
-        "keyframe"}}};
+  const std::size_t notes = more(before.notes, after.notes), measures = more(before.measures, after.measures);
+  const auto keyframes = std::count_if(after.keyframes.begin(), after.keyframes.end(),
+                                       [&](const Keyframe& key) { return !has_look(before.keyframes, key); });
   std::string out;
-  for (const auto& [count, name] : counts)
-    if (count > 0) out += (out.empty() ? "" : ", ") + count_text(count, name);
-  if (before.edition == TabletEdition{} && after.edition != TabletEdition{})
-    out += std::string(out.empty() ? "" : ", ") + "what is said of the tablet";
+  const auto add = [&](const std::string& words) { out += (out.empty() ? "" : ", ") + words; };
+  if (notes > 0) add(tr("marks.notes", notes));
+  if (measures > 0) add(tr("marks.measures", measures));
+  if (keyframes > 0) add(tr("marks.keyframes", keyframes));
+  if (before.edition == TabletEdition{} && after.edition != TabletEdition{}) add(tr("marks.edition"));
   return out;
 }
 

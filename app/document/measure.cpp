@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/words/text.h"
+
 namespace dubsar::app {
 
 std::optional<MeasureKind> measure_kind(std::string_view name) {
@@ -29,7 +31,7 @@ std::size_t points_of(MeasureKind kind) {
 std::string length_text(double mm) {
   const double size = std::abs(mm);
   const int digits = size >= 100 ? 1 : size >= 10 ? 2 : size >= 0.1 || size == 0 ? 3 : 4;
-  return fmt::format("{:.{}f} mm", mm, digits);
+  return local_figures(fmt::format("{:.{}f} mm", mm, digits));
 }
 
 namespace {
@@ -38,25 +40,27 @@ namespace {
 std::string uncertain_text(double mm, double uncertainty_mm) {
   const int digits =
       uncertainty_mm > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(uncertainty_mm))), 0, 4) : 3;
-  return fmt::format("{:.{}f} \u00b1 {:.{}f} mm", mm, digits, uncertainty_mm, digits);
+  return local_figures(fmt::format("{:.{}f} \u00b1 {:.{}f} mm", mm, digits, uncertainty_mm, digits));
 }
 
 }  // namespace
 
 std::string figures_text(const Measure& measure) {
   const MeasureFigures& f = measure.figures;
-  const std::string along = f.surface_mm > 0 ? fmt::format(", {} along the surface", length_text(f.surface_mm)) : "";
+  const std::string straight = length_text(f.straight_mm);
+  const std::string along = f.surface_mm > 0 ? tr("measure.along", straight, length_text(f.surface_mm)) : straight;
   switch (measure.kind) {
     case MeasureKind::kAngle:
-      return fmt::format("{:.2f}\u00b0", f.angle_deg);
+      return local_figures(fmt::format("{:.2f}\u00b0", f.angle_deg));
     case MeasureKind::kDepth:
-      return (f.uncertainty_mm ? uncertain_text(f.depth_mm, *f.uncertainty_mm) : length_text(f.depth_mm)) + " deep";
+      return tr("measure.deep",
+                f.uncertainty_mm ? uncertain_text(f.depth_mm, *f.uncertainty_mm) : length_text(f.depth_mm));
     case MeasureKind::kProfile:
-      return fmt::format("{}{}, {} deep", length_text(f.straight_mm), along, length_text(f.depth_mm));
+      return along + ", " + tr("measure.deep", length_text(f.depth_mm));
     case MeasureKind::kDistance:
       break;
   }
-  return length_text(f.straight_mm) + along;
+  return along;
 }
 
 }  // namespace dubsar::app

@@ -8,6 +8,7 @@
 
 #include "app/document/document.h"
 #include "app/stage/right_to_left.h"
+#include "app/words/text.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
@@ -325,7 +326,8 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
   out.dark = motion_.dark;
   out.signs = signs_;
   if (menu_.open())
-    for (const OperatorRow& row : OperatorMenu::rows()) out.menu.push_back(fmt::format("{}  {}", row.key, row.words));
+    for (const OperatorRow& row : OperatorMenu::rows())
+      out.menu.push_back(fmt::format("{}  {}", row.key, tr_name("operator", row.words)));
   return out;
 }
 

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kLongestBarPx = 150.0;
 constexpr float kFaint = 0.33f;
+constexpr float kBarRoom = 250.0f;  // for the figure of the slider and the scale bar
 constexpr float kToolsWidth = 82.0f, kScrollBar = 10.0f;
 
 void begin(const char* name, float x, float y, float width, float height) {
@@ -31,24 +32,28 @@ void draw_line(const Board& desk) {
   const FilesState& files = desk.state.files;
   if (files.names.size() > 1) {
     ImGui::SameLine(0.0f, 12.0f);
-    button(desk, fmt::format("{} of {}", files.shown + 1, files.names.size()).c_str(), "next_file", false);
+    button(desk, tr("files.position", files.shown + 1, files.names.size()), "next_file", false);
   }
   if (!desk.state.line.side.empty()) {
     ImGui::SameLine(0.0f, 24.0f);
-    ImGui::TextColored(ImColor(kDim), "%s", desk.state.line.side.c_str());
+    ImGui::TextColored(ImColor(kDim), "%s", tr_name("side", desk.state.line.side).c_str());
   }
   const std::string display = "F2  " + desk.state.line.display;
-  const float right = button_width("open") + button_width("undo") + button_width("redo") +
-                      button_width(display.c_str()) + button_width("?");
+  const float right = button_width(tr("top.open")) + button_width(tr("top.undo")) + button_width(tr("top.redo")) +
+                      button_width(display) + button_width(desk.state.line.language) + button_width("?");
   ImGui::SameLine(std::max(ImGui::GetCursorPosX() + 8.0f, desk.width - right - 4.0f));
-  button(desk, "open", "open", desk.state.desk.choosing.open);
+  button(desk, tr("top.open"), "open", desk.state.desk.choosing.open);
   ImGui::SameLine();
-  button(desk, "undo", "undo", false, !desk.state.line.undo.empty());
+  button(desk, tr("top.undo"), "undo", false, !desk.state.line.undo.empty());
   ImGui::SameLine();
-  button(desk, "redo", "redo", false, !desk.state.line.redo.empty());
+  button(desk, tr("top.redo"), "redo", false, !desk.state.line.redo.empty());
   ImGui::SameLine();
-  button(desk, display.c_str(), "next_display", false);
+  button(desk, display, "next_display", false);
   ImGui::SameLine();
+  if (!desk.state.line.language.empty()) {
+    button(desk, desk.state.line.language, "ui_language", false);
+    ImGui::SameLine();
+  }
   button(desk, "?", "help", false);
   ImGui::End();
 }
@@ -57,7 +62,7 @@ void draw_scale_bar(const Board& desk) {
   if (desk.state.mm_per_px <= 0.0) return;
   const double mm = scale_bar_mm(desk.state.mm_per_px, kLongestBarPx);
   const auto length = static_cast<float>(mm / desk.state.mm_per_px);
-  const std::string label = fmt::format("{:g} mm", mm);
+  const std::string label = local_figures(fmt::format("{:g} mm", mm));
   const float y = desk.height - 0.5f * kStrip, right = desk.width - 16.0f;
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   const float left = right - length;
@@ -73,16 +78,16 @@ void draw_strip(const Board& desk) {
   ImGui::SetCursorPosY(0.5f * (kStrip - ImGui::GetFrameHeight()));
   for (std::size_t i = 0; i < kSideNames.size(); ++i) {
     const std::string name(kSideNames[i]);
-    button(desk, name.c_str(), "side " + name, desk.state.line.side == name);
+    button(desk, tr_name("side", name), "side " + name, desk.state.line.side == name);
     ImGui::SameLine(0.0f, i == 3 ? 20.0f : -1.0f);
   }
   if (can_unpack(desk.state.document)) {
     auto percent = static_cast<float>(100.0 * desk.state.document.unpack);
     ImGui::SameLine(0.0f, 28.0f);
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("unpack");
+    ImGui::TextUnformatted(tr("strip.unpack").c_str());
     ImGui::SameLine();
-    if (percent_slider("##unpack", percent, std::clamp(desk.width - 900.0f, 90.0f, 220.0f)))
+    if (percent_slider("##unpack", percent, std::clamp(desk.width - ImGui::GetCursorPosX() - kBarRoom, 60.0f, 220.0f)))
       desk.commands.push_back(fmt::format("unpack {:.4g}", percent));
     explain(desk, "unpack_more");
   }
@@ -91,41 +96,35 @@ void draw_strip(const Board& desk) {
 }
 
 void draw_tools(const Board& desk) {
-  constexpr std::array<std::array<const char*, 2>, 8> kTools{{{"Turn", "turn"},
-                                                              {"Distance", "distance"},
-                                                              {"Angle", "angle"},
-                                                              {"Depth", "depth"},
-                                                              {"Profile", "profile"},
-                                                              {"Note", "note"},
-                                                              {"Line", "line"},
-                                                              {"Slice", "slice"}}};
+  constexpr std::array<const char*, 8> kTools{"turn", "distance", "angle", "depth", "profile", "note", "line", "slice"};
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("tools", 0.0f, kTopLine + kGap, kToolsWidth,
         row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
-  for (const auto& [label, name] : kTools)
-    row_button(desk, label, std::string("tool ") + name, desk.state.desk.tool == name);
+  for (const std::string name : kTools)
+    row_button(desk, tr_name("tool", name), "tool " + name, desk.state.desk.tool == name);
   ImGui::End();
 }
 
 void draw_drawers(const Board& desk) {
   struct Row {
-    const char *label, *name;
+    const char* name;
     void (*draw)(const Board&);
   };
   std::vector<Row> rows;
-  if (desk.state.document.parts.size() > 1) rows.push_back({"Parts", "parts", draw_parts});
-  rows.push_back({"Light", "light", draw_light});
-  rows.push_back({"Style", "style", draw_styles});
-  rows.push_back({"Measures", "measures", draw_measures});
-  rows.push_back({"Notes", "notes", draw_notes});
-  rows.push_back({"Cuts", "cuts", draw_cuts});
-  rows.push_back({"Slices", "slices", nullptr});
-  rows.push_back({"Film", "film", draw_film});
+  if (desk.state.document.parts.size() > 1) rows.push_back({"parts", draw_parts});
+  rows.push_back({"light", draw_light});
+  rows.push_back({"style", draw_styles});
+  rows.push_back({"measures", draw_measures});
+  rows.push_back({"notes", draw_notes});
+  rows.push_back({"cuts", draw_cuts});
+  rows.push_back({"slices", nullptr});
+  rows.push_back({"film", draw_film});
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("drawers", desk.width - kTab, kTopLine + kGap, kTab,
         row * static_cast<float>(rows.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const Row& each : rows)
-    row_button(desk, each.label, std::string("drawer ") + each.name, desk.state.desk.drawer == each.name);
+    row_button(desk, tr_name("panel", each.name), std::string("drawer ") + each.name,
+               desk.state.desk.drawer == each.name);
   ImGui::End();
   for (const Row& each : rows) {
     if (desk.state.desk.drawer != each.name) continue;
@@ -136,7 +135,8 @@ void draw_drawers(const Board& desk) {
     // What the window has no room for is reached with the wheel, or the bar at its side.
     const float most = desk.height - kTopLine - kStrip - 2.0f * kGap;
     ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - 4.0f, kTopLine + kGap), ImGuiCond_Always, ImVec2(1.0f, 0.0f));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(kDrawer, 0.0f), ImVec2(kDrawer + kScrollBar, most));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(kDrawer, 0.0f),
+                                        ImVec2(std::max(kDrawer + kScrollBar, desk.width - kTab - kToolsWidth), most));
     ImGui::Begin(each.name, nullptr, (kFixed & ~ImGuiWindowFlags_NoScrollbar) | ImGuiWindowFlags_AlwaysAutoResize);
     const ImVec2 corner = ImGui::GetCursorPos();
     ImGui::Dummy(ImVec2(kDrawer - 2.0f * ImGui::GetStyle().WindowPadding.x, 0.0f));

@@ -15,7 +15,7 @@ namespace dubsar::app {
 
 /// The line above the surface.
 struct PanelLine {
-  std::string title{}, display{};
+  std::string title{}, display{}, language{};
   std::string side{};          ///< the one that faces the viewer
   std::string undo{}, redo{};  ///< what the next one is about; empty: there is none
   friend bool operator==(const PanelLine&, const PanelLine&) = default;

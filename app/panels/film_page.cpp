@@ -11,7 +11,7 @@ namespace dubsar::app {
 namespace {
 
 constexpr const char* kDragged = "keyframe";
-constexpr float kWidest = 1.7f;
+constexpr float kWidest = 1.7f, kFilmBar = 10.0f;
 constexpr float kShortestS = 0.05f, kLongestS = 3600.0f;
 
 /// What a press of the mouse says, once it is let go; dragged, the keyframe goes where another one is.
@@ -31,7 +31,7 @@ void draw_picture(const Board& desk, std::size_t i) {
   list.AddRect(at, end, over ? kAccent : kLine);
   if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoHoldToOpenOthers)) {
     ImGui::SetDragDropPayload(kDragged, &i, sizeof i);
-    ImGui::Text("keyframe %d", static_cast<int>(i + 1));
+    ImGui::TextUnformatted(tr("film.keyframe", i + 1).c_str());
     ImGui::EndDragDropSource();
   }
 }
@@ -48,10 +48,11 @@ void take_dropped(const Board& desk, std::size_t i) {
 /// How long it takes to the next one.
 void draw_duration(const Board& desk, std::size_t i) {
   const auto& keys = desk.state.document.keyframes;
-  if (i + 1 >= keys.size()) return say_dim("the end");
+  if (i + 1 >= keys.size()) return say_dim(tr("film.end"));
   auto seconds = static_cast<float>(keys[i + 1].time_s - keys[i].time_s);
   ImGui::SetNextItemWidth(72.0f);
-  if (ImGui::DragFloat("to next", &seconds, 0.05f, kShortestS, kLongestS, "%.2f s", ImGuiSliderFlags_AlwaysClamp))
+  if (ImGui::DragFloat(tr("film.to_next").c_str(), &seconds, 0.05f, kShortestS, kLongestS, "%.2f s",
+                       ImGuiSliderFlags_AlwaysClamp))
     desk.commands.push_back(fmt::format("keyframe_seconds {} {:.4g}", i + 1, seconds));
   explain(desk, "keyframe_seconds");
 }
@@ -63,12 +64,12 @@ void draw_row(const Board& desk, std::size_t i) {
   ImGui::SameLine();
   ImGui::BeginGroup();
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(4.0f, 1.0f));
-  ImGui::TextColored(ImColor(kDim), "%d   %.2f s", static_cast<int>(i + 1), keys[i].time_s - keys.front().time_s);
+  say_dim(local_figures(fmt::format("{}   {:.2f} s", i + 1, keys[i].time_s - keys.front().time_s)));
   draw_duration(desk, i);
   const std::string number = std::to_string(i + 1);
-  button(desk, "play", "play " + number, false, keys.size() > 1);
+  button(desk, tr("film.play"), "play " + number, false, keys.size() > 1);
   ImGui::SameLine();
-  button(desk, "replace", "replace_keyframe " + number, false);
+  button(desk, tr("film.replace"), "replace_keyframe " + number, false);
   ImGui::SameLine();
   button(desk, "x", "delete_keyframe " + number, false);
   ImGui::PopStyleVar();
@@ -81,13 +82,17 @@ void draw_row(const Board& desk, std::size_t i) {
 
 void draw_film(const Board& desk) {
   const auto& keys = desk.state.document.keyframes;
-  button(desk, "add what is seen", "keyframe", false);
-  ImGui::SameLine();
-  button(desk, desk.state.playing ? "stop" : "play", "play", desk.state.playing, keys.size() > 1);
-  if (keys.empty()) return say_dim("Turn, light and lift as it shall be, and add it; go on with the next.");
+  button(desk, tr("film.add"), "keyframe", false);
+  const std::string play = desk.state.playing ? tr("film.stop") : tr("film.play");
+  next_in_row(button_width(play));
+  button(desk, play, "play", desk.state.playing, keys.size() > 1);
+  if (keys.empty()) return say_dim(tr("film.none"));
   const auto rows = static_cast<float>(std::min<std::size_t>(keys.size(), kFilmRows));
   const float room = desk.height - kTopLine - kStrip - 120.0f;
-  ImGui::BeginChild("keyframes", ImVec2(0.0f, std::min(rows * kFilmRow, room)));
+  const float words = std::max(72.0f + button_width(tr("film.to_next")),
+                               button_width(tr("film.play")) + button_width(tr("film.replace")) + button_width("x"));
+  const float width = std::max(ImGui::GetContentRegionAvail().x, kWidest * kFilmPicture + words + kFilmBar);
+  ImGui::BeginChild("keyframes", ImVec2(width, std::min(rows * kFilmRow, room)));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(6.0f, kFilmRow - kFilmPicture));
   for (std::size_t i = 0; i < keys.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
@@ -96,7 +101,7 @@ void draw_film(const Board& desk) {
   }
   ImGui::PopStyleVar();
   ImGui::EndChild();
-  if (keys.size() > 1) say_dim("Drag a picture to another place. Replace: by what is seen.");
+  if (keys.size() > 1) say_dim(tr("film.hint"));
 }
 
 }  // namespace dubsar::app

@@ -5,31 +5,33 @@
 
 #include <algorithm>
 
+#include "app/words/text.h"
+
 namespace dubsar::app {
 namespace {
 
-std::string drag_words(Action action) {
+const std::string& drag_words(Action action) {
   switch (action) {
     case Action::kRotate:
-      return "turn";
+      return tr("drag.rotate");
     case Action::kRotateFine:
-      return "turn slowly";
+      return tr("drag.rotate_fine");
     case Action::kPan:
-      return "move";
+      return tr("drag.pan");
     case Action::kZoom:
-      return "zoom";
+      return tr("drag.zoom");
     case Action::kZoomAndRoll:
-      return "zoom and roll";
+      return tr("drag.zoom_and_roll");
     case Action::kLight:
-      return "move the light";
+      return tr("drag.light");
     case Action::kNextSide:
-      return "quarter turn to the next side";
+      return tr("drag.next_side");
     case Action::kSelect:
-      return "select";
+      return tr("drag.select");
     case Action::kReset:
-      return "back to the first view";
+      return tr("drag.reset");
     default:
-      return {};
+      return tr(Text());
   }
 }
 
@@ -37,13 +39,24 @@ void add(HelpSection& section, std::string what, std::string does) {
   if (!does.empty()) section.rows.push_back({std::move(what), std::move(does)});
 }
 
+/// "Umschalt+links" in German of the mapping's "shift+left".
+std::string chord_words(const std::string& chord) {
+  std::string out;
+  for (std::size_t at = 0; at <= chord.size();) {
+    const std::size_t end = std::min(chord.find('+', at), chord.size());
+    out += (at == 0 ? "" : "+") + tr_name("chord", chord.substr(at, end - at));
+    at = end + 1;
+  }
+  return out;
+}
+
 HelpSection mouse_section(const MouseMapping& mouse) {
-  HelpSection out{"Mouse", {}};
+  HelpSection out{tr("help.mouse"), {}};
   for (const auto& [chord, action] : mouse.chords)
-    add(out, chord.ends_with("wheel") ? chord : chord + " drag", drag_words(action));
+    add(out, chord.ends_with("wheel") ? chord_words(chord) : tr("help.drag", chord_words(chord)), drag_words(action));
   const auto turns = mouse.chords.find("left");
   if (turns != mouse.chords.end() && turns->second == Action::kRotate)
-    add(out, "left twice", "what is pointed at goes to the middle");
+    add(out, tr("help.left_twice"), tr("help.to_middle"));
   const auto chords = [](const HelpRow& row) { return std::count(row.what.begin(), row.what.end(), '+'); };
   std::stable_sort(out.rows.begin(), out.rows.end(),
                    [&](const HelpRow& a, const HelpRow& b) { return chords(a) < chords(b); });
@@ -52,10 +65,10 @@ HelpSection mouse_section(const MouseMapping& mouse) {
 
 /// A finger is the left button alone.
 HelpSection touch_section(const MouseMapping& mouse) {
-  HelpSection out{"Touch", {}};
-  add(out, "a finger", drag_words(chord_action(mouse, kNoModifier, "left")));
-  add(out, "two fingers", "zoom, move and roll");
-  add(out, "a tap", "click");
+  HelpSection out{tr("help.touch"), {}};
+  add(out, tr("help.finger"), drag_words(chord_action(mouse, kNoModifier, "left")));
+  add(out, tr("help.two_fingers"), tr("help.two_fingers_do"));
+  add(out, tr("help.tap"), tr("help.click"));
   return out;
 }
 
@@ -86,11 +99,13 @@ void add_command(HelpSection& section, const Command& command, const KeyTable& k
   for (const DefaultKey& key : command.keys)
     if (!key.argument.empty())
       for (std::string& each : keys.keys_for(command.name + " " + key.argument)) told.push_back(std::move(each));
-  std::string words = command.words;
+  std::string words = tr(command.words);
   if (found.empty() && told.size() > 2) {
-    found =
-        is_row(told) ? std::vector<std::string>{key_words(told.front()) + " to " + key_words(told.back())} : said(told);
-    const std::string values = fmt::format("{}", fmt::join(command.values, ", "));
+    found = is_row(told) ? std::vector<std::string>{tr("help.range", key_words(told.front()), key_words(told.back()))}
+                         : said(told);
+    std::string values;
+    for (const std::string& value : command.values)
+      values += (values.empty() ? "" : ", ") + argument_words(command, value);
     if (command.closed && values.size() <= kLongestList) words += ": " + values;
   } else {
     found.insert(found.end(), told.begin(), told.end());
@@ -100,13 +115,13 @@ void add_command(HelpSection& section, const Command& command, const KeyTable& k
 }
 
 HelpSection hand_section(const HandMapping& hands) {
-  HelpSection out{"Hands", {}};
-  add(out, "grab and move", drag_words(hands.grab));
-  add(out, "grab and pull", drag_words(hands.pull));
-  add(out, "grab with both", drag_words(hands.two_hands));
-  add(out, "pinch and move", drag_words(hands.pinch));
-  add(out, "swipe", drag_words(hands.swipe));
-  add(out, "rest", drag_words(hands.dwell));
+  HelpSection out{tr("help.hands"), {}};
+  add(out, tr("help.grab"), drag_words(hands.grab));
+  add(out, tr("help.pull"), drag_words(hands.pull));
+  add(out, tr("help.both"), drag_words(hands.two_hands));
+  add(out, tr("help.pinch"), drag_words(hands.pinch));
+  add(out, tr("help.swipe"), drag_words(hands.swipe));
+  add(out, tr("help.rest"), drag_words(hands.dwell));
   return out;
 }
 
@@ -118,8 +133,8 @@ std::vector<HelpSection> command_sections(const KeyTable& keys, bool keyboard_st
   std::vector<HelpSection> out;
   for (const Command& command : keys.commands().all()) {
     if ((command.steers && !keyboard_steers) || idle(command)) continue;
-    auto at = std::find_if(out.begin(), out.end(), [&](const HelpSection& s) { return s.title == command.group; });
-    if (at == out.end()) at = out.insert(out.end(), HelpSection{command.group, {}});
+    auto at = std::find_if(out.begin(), out.end(), [&](const HelpSection& s) { return s.title == tr(command.group); });
+    if (at == out.end()) at = out.insert(out.end(), HelpSection{tr(command.group), {}});
     add_command(*at, command, keys, there);
   }
   std::rotate(out.begin(), std::min(out.begin() + 1, out.end()), out.end());  // the window's own come last
@@ -129,21 +144,19 @@ std::vector<HelpSection> command_sections(const KeyTable& keys, bool keyboard_st
 }  // namespace
 
 std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys, const HelpDevices& there) {
-  std::vector<HelpSection> out{mouse_section(mapping.mouse),
-                               hand_section(mapping.hands),
-                               {"Puck", {{"push", "move and zoom"}, {"twist", "turn"}}},
-                               touch_section(mapping.mouse)};
   const auto listens = [&](Control control) {
     return std::find(mapping.priority.begin(), mapping.priority.end(), control) != mapping.priority.end();
   };
+  std::vector<HelpSection> out;
+  if (listens(Control::kMouse)) out.push_back(mouse_section(mapping.mouse));
+  if (there.more && listens(Control::kHands)) out.push_back(hand_section(mapping.hands));
+  if (there.more && listens(Control::kPuck))
+    out.push_back(
+        {tr("help.puck"), {{tr("help.push"), tr("help.push_does")}, {tr("help.twist"), tr("help.twist_does")}}});
+  if (there.touch && listens(Control::kMouse)) out.push_back(touch_section(mapping.mouse));
   for (HelpSection& section : command_sections(keys, listens(Control::kKeyboard), there))
     out.push_back(std::move(section));
-  std::erase_if(out, [&](const HelpSection& s) {
-    return s.rows.empty() || (s.title == "Mouse" && !listens(Control::kMouse)) ||
-           (s.title == "Touch" && !(there.touch && listens(Control::kMouse))) ||
-           (s.title == "Hands" && !(there.more && listens(Control::kHands))) ||
-           (s.title == "Puck" && !(there.more && listens(Control::kPuck)));
-  });
+  std::erase_if(out, [](const HelpSection& s) { return s.rows.empty(); });
   return out;
 }
 

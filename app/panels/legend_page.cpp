@@ -16,7 +16,8 @@ constexpr float kBarEm = 15.0f, kTall = 12.0f, kPad = 10.0f;
 std::optional<LegendPicture> legend_of(const Style& style) {
   if (!is_field(style.map)) return std::nullopt;
   const FieldScale scale = field_scale(style);
-  return LegendPicture{std::string(scale.name), std::string(scale.unit), scale.from, scale.to, field_colors(style)};
+  return LegendPicture{tr_name("legend", scale.name), std::string(scale.unit), scale.from, scale.to,
+                       field_colors(style)};
 }
 
 void draw_legend(const LegendPicture& legend, float left, float bottom) {
@@ -40,7 +41,7 @@ void draw_legend(const LegendPicture& legend, float left, float bottom) {
   }
   for (int tick = 0; tick < kLegendTicks; ++tick) {
     const double part = tick / (kLegendTicks - 1.0);
-    const std::string number = legend_number(legend.from + part * (legend.to - legend.from));
+    const std::string number = local_figures(legend_number(legend.from + part * (legend.to - legend.from)));
     const float x = corner.x + static_cast<float>(part) * bar;
     list.AddLine(ImVec2(x, top + kTall), ImVec2(x, top + kTall + 4.0f), kText);
     list.AddText(ImVec2(x - 0.5f * ImGui::CalcTextSize(number.c_str()).x, top + kTall + 4.0f), kText, number.c_str());

@@ -8,7 +8,6 @@
 
 #include "app/panels/panel_kit.h"
 #include "app/stage/light_over.h"
-#include "display/render/shading.h"
 
 namespace dubsar::app {
 namespace {
@@ -16,12 +15,18 @@ namespace {
 constexpr float kBall = 110.0f;
 constexpr ImU32 kHatch = IM_COL32(122, 158, 204, 255), kStripe = IM_COL32(38, 70, 128, 255);  // as the surface has it
 
-std::string style_words(const std::string& name) { return std::string(shading_preset_words(name)); }
+std::string style_words(const std::string& name) { return tr_name("style", name); }
+
+/// Figures as people write them.
+template <class... Values>
+std::string figures(fmt::format_string<const Values&...> format, const Values&... values) {
+  return local_figures(fmt::format(format, values...));
+}
 
 /// What the hatch means, and how much of the surface it is.
 void draw_evidence(const Board& desk) {
   bool evidence = desk.state.document.style.evidence;
-  if (ImGui::Checkbox("mark what the scan does not show", &evidence)) desk.commands.push_back("evidence");
+  if (ImGui::Checkbox(tr("look.mark_inferred").c_str(), &evidence)) desk.commands.push_back("evidence");
   explain(desk, "evidence");
   const double all = desk.state.evidence.measured_mm2 + desk.state.evidence.inferred_mm2;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -33,12 +38,13 @@ void draw_evidence(const Board& desk) {
     draw->AddRectFilled(ImVec2(x, corner.y), ImVec2(std::min(x + 4.0f, end.x), end.y), kStripe);
   ImGui::Dummy(ImVec2(2.0f * size + 4.0f, size));
   ImGui::SameLine();
-  ImGui::Text("%.1f mm\u00b2, %.1f %%", desk.state.evidence.inferred_mm2,
-              all > 0 ? 100.0 * desk.state.evidence.inferred_mm2 / all : 0.0);
-  say_dim("no surface in the scan here: closed so that the part is whole");
+  ImGui::TextUnformatted(figures("{:.1f} mm\u00b2, {:.1f} %", desk.state.evidence.inferred_mm2,
+                                 all > 0 ? 100.0 * desk.state.evidence.inferred_mm2 / all : 0.0)
+                             .c_str());
+  say_dim(tr("look.inferred"));
   ImGui::Text("%.0f mm\u00b2", desk.state.evidence.measured_mm2);
   ImGui::SameLine();
-  ImGui::TextColored(ImColor(kDim), "seen in the scan");
+  ImGui::TextColored(ImColor(kDim), "%s", tr("look.measured").c_str());
 }
 
 /// A second style, and how much of it.
@@ -46,10 +52,10 @@ void draw_blend(const Board& desk) {
   const Command* const style = desk.keys.commands().find("style");
   if (style == nullptr) return;
   const auto share = static_cast<float>(100.0 * desk.state.document.style.share);
-  ImGui::SetNextItemWidth(120.0f);
-  if (ImGui::BeginCombo("mixed with", desk.state.document.style.other.empty()
-                                          ? "nothing"
-                                          : style_words(desk.state.document.style.other).c_str())) {
+  const std::string other =
+      desk.state.document.style.other.empty() ? tr("look.nothing") : style_words(desk.state.document.style.other);
+  ImGui::SetNextItemWidth(combo_width(other));
+  if (ImGui::BeginCombo(tr("look.mixed_with").c_str(), other.c_str())) {
     for (const std::string& name : style->values)
       if (ImGui::Selectable(style_words(name).c_str(), name == desk.state.document.style.other))
         desk.commands.push_back(fmt::format("blend {} {:.4g}", name, share > 0 ? share : 50.0f));
@@ -58,24 +64,25 @@ void draw_blend(const Board& desk) {
   explain(desk, "blend");
   if (desk.state.document.style.other.empty()) return;
   float percent = share;
-  if (percent_slider("of it", percent, 120.0f, 100.0f))
+  if (percent_slider(tr("look.of_it"), percent, 120.0f, 100.0f))
     desk.commands.push_back(fmt::format("blend {} {:.4g}", desk.state.document.style.other, percent));
   explain(desk, "blend");
 }
 
+std::string colour_words(const std::string& name) { return tr_name("colours", name.empty() ? "designed" : name); }
+
 /// Radiance scaling, and the colours of figures with their legend.
 void draw_shades(const Board& desk) {
   auto percent = static_cast<float>(100.0 * desk.state.document.style.radiance);
-  if (percent_slider("ridges", percent, 120.0f, 200.0f))
+  if (percent_slider(tr("look.ridges"), percent, 120.0f, 200.0f))
     desk.commands.push_back(fmt::format("radiance {:.4g}", percent));
   explain(desk, "radiance");
   const Command* const colours = desk.keys.commands().find("colours");
-  ImGui::SetNextItemWidth(120.0f);
-  if (colours != nullptr && ImGui::BeginCombo("colours", desk.state.document.style.colours.empty()
-                                                             ? "designed"
-                                                             : desk.state.document.style.colours.c_str())) {
+  ImGui::SetNextItemWidth(combo_width(colour_words(desk.state.document.style.colours)));
+  if (colours != nullptr &&
+      ImGui::BeginCombo(tr("look.colours").c_str(), colour_words(desk.state.document.style.colours).c_str())) {
     for (const std::string& name : colours->values)
-      if (ImGui::Selectable(name.c_str(), name == desk.state.document.style.colours))
+      if (ImGui::Selectable(colour_words(name).c_str(), name == desk.state.document.style.colours))
         desk.commands.push_back("colours " + name);
     ImGui::EndCombo();
   }
@@ -88,7 +95,8 @@ void draw_parts(const Board& desk) {
   for (std::size_t i = 0; i < desk.state.document.parts.size(); ++i) {
     const Part& part = desk.state.document.parts[i];
     bool visible = part.visible;
-    if (ImGui::Checkbox(part.name.c_str(), &visible)) desk.commands.push_back(fmt::format("part {}", i + 1));
+    if (ImGui::Checkbox(tr_name("part", part.name).c_str(), &visible))
+      desk.commands.push_back(fmt::format("part {}", i + 1));
     explain(desk, fmt::format("part {}", i + 1));
     auto percent = static_cast<float>(100.0 * part.opacity);
     ImGui::SameLine();
@@ -115,7 +123,7 @@ void draw_parts(const Board& desk) {
     explain(desk, "part_offset");
     ImGui::PopID();
   }
-  button(desk, "all parts", "all_parts", false);
+  button(desk, tr("look.all_parts"), "all_parts", false);
 }
 
 /// A ball seen from the front: the light stands where it is touched, low at its
@@ -140,19 +148,14 @@ void draw_light(const Board& desk) {
                      middle.y - radius * static_cast<float>(stands.y));
   draw->AddLine(light, middle, kLine, 1.5f);
   draw->AddCircleFilled(light, 6.0f, kAccent, 24);
-  ImGui::TextColored(ImColor(kDim), "%.0f° round, %.0f° high", desk.state.document.light.azimuth_deg,
-                     desk.state.document.light.elevation_deg);
-  constexpr std::array<std::array<const char*, 2>, 8> kPresets{{{"upper left", "upper_left"},
-                                                                {"top", "top"},
-                                                                {"upper right", "upper_right"},
-                                                                {"left", "left"},
-                                                                {"right", "right"},
-                                                                {"lower left", "lower_left"},
-                                                                {"bottom", "bottom"},
-                                                                {"lower right", "lower_right"}}};
+  say_dim(tr("light.place", fmt::format("{:.0f}", desk.state.document.light.azimuth_deg),
+             fmt::format("{:.0f}", desk.state.document.light.elevation_deg)));
+  constexpr std::array<const char*, 8> kPresets{"upper_left", "top",        "upper_right", "left",
+                                                "right",      "lower_left", "bottom",      "lower_right"};
   for (std::size_t i = 0; i < kPresets.size(); ++i) {
-    if (i != 0 && i != 3 && i != 5) ImGui::SameLine();
-    button(desk, kPresets[i][0], std::string("light_from ") + kPresets[i][1], false);
+    const std::string label = tr_name("direction", kPresets[i]);
+    if (i != 0 && i != 3 && i != 5) next_in_row(button_width(label));
+    button(desk, label, std::string("light_from ") + kPresets[i], false);
   }
 }
 
@@ -164,10 +167,10 @@ void draw_styles(const Board& desk) {
       explain(desk, "style " + name);
     }
   bool occlusion = desk.state.document.style.occlusion;
-  if (ImGui::Checkbox("dark hollows", &occlusion)) desk.commands.push_back("occlusion");
+  if (ImGui::Checkbox(tr("look.dark_hollows").c_str(), &occlusion)) desk.commands.push_back("occlusion");
   explain(desk, "occlusion");
   auto strength = static_cast<float>(100.0 * desk.state.document.style.strength);
-  if (percent_slider("strength", strength, 120.0f, 200.0f))
+  if (percent_slider(tr("look.strength"), strength, 120.0f, 200.0f))
     desk.commands.push_back(fmt::format("strength {:.4g}", strength));
   draw_shades(desk);
   draw_blend(desk);

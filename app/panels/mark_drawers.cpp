@@ -56,22 +56,24 @@ void draw_line_below(const Board& desk, std::size_t at) {
   const Note& note = desk.state.document.notes[at];
   if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)))
     desk.commands.push_back(fmt::format("next_line {}", at + 1));
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("sz s, t, h, qi2 become letters; Enter makes the next line");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tr("note.letters").c_str());
   const std::vector<BracketFault> faults = bracket_faults(note.text);
   for (const BracketFault& fault : faults)
-    ImGui::TextColored(ImColor(kAccent), "%s %s", fault.bracket.c_str(),
-                       fault.kind == BracketFault::Kind::kNotClosed   ? "is not closed"
-                       : fault.kind == BracketFault::Kind::kNotOpened ? "closes nothing"
-                                                                      : "stands within another one");
+    ImGui::TextColored(ImColor(kAccent), "%s",
+                       (fault.kind == BracketFault::Kind::kNotClosed   ? tr("bracket.not_closed", fault.bracket)
+                        : fault.kind == BracketFault::Kind::kNotOpened ? tr("bracket.not_opened", fault.bracket)
+                                                                       : tr("bracket.nested", fault.bracket))
+                           .c_str());
   if (!faults.empty())
-    button(desk, "close brackets", fmt::format("note_text {} {}", at + 1, with_brackets_closed(note.text)), false);
+    button(desk, tr("note.close_brackets"), fmt::format("note_text {} {}", at + 1, with_brackets_closed(note.text)),
+           false);
   std::string typed;
   if (type_in("##translation", note.translation, typed, kFieldPx))
     desk.commands.push_back(fmt::format("line_translation {} {}", at + 1, typed));
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("translation");
-  button(desk, "next line", fmt::format("next_line {}", at + 1), false);
-  ImGui::SameLine();
-  button(desk, "line above", fmt::format("insert_line {}", at + 1), false);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tr("note.translation").c_str());
+  button(desk, tr("note.next_line"), fmt::format("next_line {}", at + 1), false);
+  next_in_row(button_width(tr("note.line_above")));
+  button(desk, tr("note.line_above"), fmt::format("insert_line {}", at + 1), false);
 }
 
 /// Lines of a transliteration that was read in and are not on the clay yet.
@@ -79,16 +81,16 @@ void draw_waiting(const Board& desk) {
   if (desk.state.document.edition.atf.empty()) return;
   const std::vector<TextPassage> waiting = waiting_lines(desk.state.document);
   if (waiting.empty()) return;
-  say_dim(fmt::format("{} lines wait to be pinned (tool Line):", waiting.size()).c_str());
+  say_dim(tr("note.waiting", waiting.size()));
   constexpr std::size_t kShown = 12;
   for (std::size_t k = 0; k < std::min(waiting.size(), kShown); ++k)
-    say_dim(fmt::format("{}  {}", line_label(waiting[k].spot), waiting[k].text).c_str());
+    say_dim(fmt::format("{}  {}", line_label(waiting[k].spot), waiting[k].text));
 }
 
 }  // namespace
 
 void draw_measures(const Board& desk) {
-  if (desk.state.document.measures.empty()) say_dim("Take a tool at the left and click on the surface.");
+  if (desk.state.document.measures.empty()) say_dim(tr("measure.none"));
   for (std::size_t i = 0; i < desk.state.document.measures.size(); ++i) {
     const Measure& measure = desk.state.document.measures[i];
     ImGui::PushID(static_cast<int>(i));
@@ -109,7 +111,7 @@ void draw_measures(const Board& desk) {
 }
 
 void draw_notes(const Board& desk) {
-  if (desk.state.document.notes.empty()) say_dim("Take the tool Note or Line at the left and click on the surface.");
+  if (desk.state.document.notes.empty()) say_dim(tr("note.none"));
   ImGuiStorage& kept = *ImGui::GetStateStorage();
   const ImGuiID answered = ImGui::GetID("answered"), lettered = ImGui::GetID("lettered"),
                 length = ImGui::GetID("length");
@@ -119,15 +121,15 @@ void draw_notes(const Board& desk) {
     ImGui::PushID(static_cast<int>(i));
     const std::string title = fmt::format("{}  {}", note.label.empty() ? std::to_string(i + 1) : note.label,
                                           open ? std::string() : note.text.substr(0, note.text.find('\n')));
-    button(desk, title.c_str(), fmt::format("open_note {}", i + 1), open);
+    button(desk, title, fmt::format("open_note {}", i + 1), open);
     if (open) {
       std::string typed;
       if (type_in("##label", note.label, typed, 90.0f))
         desk.commands.push_back(fmt::format("note_label {} {}", i + 1, typed));
-      ImGui::SameLine();
-      button(desk, "look", fmt::format("go_to_note {}", i + 1), false);
-      ImGui::SameLine();
-      button(desk, "delete", fmt::format("delete_note {}", i + 1), false);
+      next_in_row(button_width(tr("note.look")));
+      button(desk, tr("note.look"), fmt::format("go_to_note {}", i + 1), false);
+      next_in_row(button_width(tr("note.delete")));
+      button(desk, tr("note.delete"), fmt::format("delete_note {}", i + 1), false);
       const int placed = static_cast<int>(desk.state.desk.pointing.notes);
       // What is typed after the click that placed a note, or after a letter was pressed, is its text.
       const bool fresh = kept.GetInt(answered) != placed;
@@ -154,20 +156,21 @@ void draw_notes(const Board& desk) {
 }
 
 void draw_cuts(const Board& desk) {
-  button(desk, "box to drag", "cut_handles", desk.state.desk.pointing.cut_box);
-  button(desk, "across the view", "cut_here", false);
+  button(desk, tr("cut.box"), "cut_handles", desk.state.desk.pointing.cut_box);
+  button(desk, tr("cut.across"), "cut_here", false);
   const bool any = !desk.state.document.clips.empty();
-  button(desk, "deeper", "cut_deeper", false, any);
-  ImGui::SameLine();
-  button(desk, "less deep", "cut_back", false, any);
-  ImGui::SameLine();
-  button(desk, "none", "no_cuts", false, any);
-  for (const char* side : {"front", "back", "left", "right", "top", "bottom"}) {
-    if (side != std::string("front") && side != std::string("left") && side != std::string("top")) ImGui::SameLine();
-    button(desk, side, fmt::format("cut {} 20", side), false);
+  button(desk, tr("cut.deeper"), "cut_deeper", false, any);
+  next_in_row(button_width(tr("cut.less_deep")));
+  button(desk, tr("cut.less_deep"), "cut_back", false, any);
+  next_in_row(button_width(tr("cut.none")));
+  button(desk, tr("cut.none"), "no_cuts", false, any);
+  for (const std::string side : {"front", "back", "left", "right", "top", "bottom"}) {
+    const std::string label = tr_name("box_side", side);
+    if (side != "front" && side != "left" && side != "top") next_in_row(button_width(label));
+    button(desk, label, fmt::format("cut {} 20", side), false);
   }
   auto percent = static_cast<float>(100.0 * desk.state.document.fog);
-  if (percent_slider("far side fades", percent, 120.0f)) desk.commands.push_back(fmt::format("fog {:.4g}", percent));
+  if (percent_slider(tr("cut.fog"), percent, 120.0f)) desk.commands.push_back(fmt::format("fog {:.4g}", percent));
   explain(desk, "fog");
 }
 

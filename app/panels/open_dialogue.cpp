@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
-#include "app/cli/overall_progress.h"
 #include "app/document/file_kinds.h"
 #include "app/panels/panel_kit.h"
 #include "core/base/text/lower_text.h"
@@ -68,6 +68,15 @@ void draw_rows(const std::vector<DialogueRow>& rows, Entered& typed, std::vector
   }
 }
 
+/// As rough as rough_duration().
+std::string duration_words(double seconds) {
+  const auto to = [](double value, long step) { return step * std::lround(value / static_cast<double>(step)); };
+  if (seconds < 10) return tr("time.few");
+  if (seconds < 50) return tr("time.seconds", to(seconds, 5));
+  if (seconds < 3300) return tr("time.minutes", std::max(1L, to(seconds / 60, seconds < 570 ? 1 : 5)));
+  return tr("time.hours", to(seconds / 60, 10) / 60, to(seconds / 60, 10) % 60);
+}
+
 }  // namespace
 
 std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view typed) {
@@ -76,7 +85,7 @@ std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view
   const auto fits = [&](const std::string& name) { return lower_text(name).find(wanted) != std::string::npos; };
   if (typed.find('/') != std::string_view::npos || typed == "..") {
     const bool surface = names_a_surface(fs::path(typed));
-    out.push_back({std::string(typed), surface ? "open" : "folder",
+    out.push_back({std::string(typed), surface ? tr("files.open") : tr("files.folder"),
                    fmt::format("{} {}", surface ? "open" : "open_folder", typed), false, !surface});
     return out;
   }
@@ -85,16 +94,16 @@ std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view
     const RecentFile& file = files.recent[i];
     const fs::path path(file.path);
     if (!fits(path.filename().string())) continue;
-    recent.push_back({path.filename().string(), file.there ? path.parent_path().string() : "not there any more",
+    recent.push_back({path.filename().string(), file.there ? path.parent_path().string() : tr("files.gone"),
                       file.there ? fmt::format("open_recent {}", i + 1) : std::string()});
   }
-  if (!recent.empty()) out.push_back({"opened last", {}, {}, true});
+  if (!recent.empty()) out.push_back({tr("files.last"), {}, {}, true});
   out.insert(out.end(), recent.begin(), recent.end());
   if (!files.listing) return out;
   const FolderListing& listing = *files.listing;
   out.push_back({listing.folder, {}, {}, true});
   if (!listing.problem.empty()) out.push_back({listing.problem, {}, {}, true});
-  if (typed.empty() && listing.folder != "/") out.push_back({"..", "the folder above", "open_folder ..", false, true});
+  if (typed.empty() && listing.folder != "/") out.push_back({"..", tr("files.above"), "open_folder ..", false, true});
   bool any = false;
   for (const FolderEntry& entry : listing.entries) {
     if (!fits(entry.name)) continue;
@@ -104,7 +113,7 @@ std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view
                    fmt::format("{} {}", entry.folder ? "open_folder" : "open", path), false, entry.folder});
   }
   if (!any && listing.problem.empty())
-    out.push_back({typed.empty() ? "no surfaces and no folders here" : "nothing here is called so", {}, {}, true});
+    out.push_back({typed.empty() ? tr("files.none") : tr("files.no_name"), {}, {}, true});
   return out;
 }
 
@@ -115,9 +124,10 @@ std::string title_words(const std::string& shown, const std::optional<Opening>& 
 }
 
 std::string opening_words(const Opening& opening) {
-  std::string out = "reading " + opening.name;
-  if (opening.share > 0) out += fmt::format(": {:.0f} %", 100.0 * opening.share);
-  if (opening.remaining_s) out += fmt::format(", {} to go", rough_duration(*opening.remaining_s));
+  std::string out = opening.share > 0
+                        ? tr("files.reading_share", opening.name, fmt::format("{:.0f}", 100.0 * opening.share))
+                        : tr("files.reading", opening.name);
+  if (opening.remaining_s) out += ", " + tr("files.to_go", duration_words(*opening.remaining_s));
   return out;
 }
 
@@ -135,12 +145,12 @@ void draw_open_dialogue(bool open, const FilesState& files, float width, float h
   ImGui::SetNextWindowSize(
       ImVec2(std::min(kDialogueWidth, width - 24.0f), std::min(kHeight, height - kTopLine - kStrip - 16.0f)));
   ImGui::Begin("open", nullptr, (kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus));
-  ImGui::TextColored(ImColor(kAccent), "Open a surface");
-  ImGui::SameLine();
-  ImGui::TextColored(ImColor(kDim), "EXA, PLY, OBJ, STL, GLB; or drop files on the window");
+  ImGui::TextColored(ImColor(kAccent), "%s", tr("files.title").c_str());
+  next_in_row(ImGui::CalcTextSize(tr("files.kinds").c_str()).x);
+  say_fitted(kDim, tr("files.kinds"), ImGui::GetContentRegionAvail().x);
   ImGui::SetNextItemWidth(-1.0f);
   if (std::exchange(typed.focus, false)) ImGui::SetKeyboardFocusHere();
-  const bool entered = ImGui::InputTextWithHint("##typed", "a name from below, or a path", typed.text.data(),
+  const bool entered = ImGui::InputTextWithHint("##typed", tr("files.field").c_str(), typed.text.data(),
                                                 typed.text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   const bool edited = ImGui::IsItemEdited();
   const std::vector<DialogueRow> rows = dialogue_rows(files, typed.text.data());
@@ -171,10 +181,10 @@ void draw_opening(const FilesState& files, float width, float height, std::vecto
   ImGui::TextUnformatted(opening_words(*files.opening).c_str());
   ImGui::PopTextWrapPos();
   ImGui::PushStyleColor(ImGuiCol_PlotHistogram, kAccent);
-  ImGui::ProgressBar(static_cast<float>(files.opening->share), ImVec2(-78.0f, 6.0f), "");
+  ImGui::ProgressBar(static_cast<float>(files.opening->share), ImVec2(-button_width(tr("files.stop")), 6.0f), "");
   ImGui::PopStyleColor();
   ImGui::SameLine();
-  if (ImGui::Button("stop  Esc")) commands.emplace_back("stop_opening");
+  if (ImGui::Button(tr("files.stop").c_str())) commands.emplace_back("stop_opening");
   ImGui::End();
 }
 

@@ -1,5 +1,6 @@
 #include "app/panels/palette.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@ struct Typed {
   bool was_open = false;
   bool focus = false;  ///< the next frame's field takes the keys, its cursor at the end
   bool to_end = false;
+  float width = kPaletteWidth;  ///< that the rows need
 };
 Typed& typed_now() {
   static Typed typed;
@@ -59,12 +61,13 @@ std::vector<PaletteRow> palette_rows(const KeyTable& keys, std::string_view type
   const std::vector<std::string> words = words_of(typed);
   std::vector<PaletteRow> first, out;
   if (!typed.empty() && typed.find(' ') != std::string_view::npos && keys.commands().check(typed))
-    first.push_back({std::string(typed), "as it is typed", {}, true});
+    first.push_back({std::string(typed), tr("palette.typed"), {}, true});
   const auto add = [&](const Command& command, const std::string& argument, bool ready) {
-    PaletteRow row{argument.empty() ? command.name : command.name + " " + argument, command.words, {}, ready};
-    if (!argument.empty()) row.words += ": " + argument;
-    if (!ready) row.words += " (" + command.argument + ")";
-    std::vector<std::string> there = words_of(row.text + " " + row.words + " " + command.group);
+    PaletteRow row{argument.empty() ? command.name : command.name + " " + argument, tr(command.words), {}, ready};
+    if (!argument.empty()) row.words += ": " + argument_words(command, argument);
+    if (!ready) row.words += " (" + tr(command.argument) + ")";
+    std::vector<std::string> there =
+        words_of(fmt::format("{} {} {} {}", row.text, row.words, tr(command.group), command.words.english()));
     if (!fits(words, there) ||
         std::any_of(first.begin(), first.end(), [&](const auto& r) { return r.text == row.text; }))
       return;
@@ -95,16 +98,19 @@ void draw_palette(bool open, const KeyTable& keys, float width, float height, st
   if (!open) return;
   if (fresh) typed = {{}, 0, true, true, false};
   ImGui::SetNextWindowPos(ImVec2(0.5f * width, kTopLine + kGap), ImGuiCond_Always, ImVec2(0.5f, 0.0f));
-  ImGui::SetNextWindowSize(ImVec2(std::min(kPaletteWidth, width - 24.0f), 0.0f));
+  ImGui::SetNextWindowSize(ImVec2(std::min(typed.width, width - 24.0f), 0.0f));
   ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(width, height - 2.0f * kTopLine));
   ImGui::Begin("palette", nullptr,
                (kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::SetNextItemWidth(-1.0f);
   if (std::exchange(typed.focus, false)) ImGui::SetKeyboardFocusHere();
   const bool entered = ImGui::InputTextWithHint(
-      "##typed", "what shall be done?", typed.text.data(), typed.text.size(),
+      "##typed", tr("palette.field").c_str(), typed.text.data(), typed.text.size(),
       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, put_cursor, &typed.to_end);
   const std::vector<PaletteRow> rows = palette_rows(keys, typed.text.data(), kRows);
+  float widest = kPaletteWidth;
+  for (const PaletteRow& row : rows) widest = std::max(widest, button_width(row.words) + button_width(row.key) + 40.0f);
+  typed.width = widest;
   if (ImGui::IsItemEdited()) typed.marked = 0;
   if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow)) && typed.marked + 1 < rows.size()) ++typed.marked;
   if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow)) && typed.marked > 0) --typed.marked;
@@ -131,7 +137,7 @@ void draw_palette(bool open, const KeyTable& keys, float width, float height, st
     }
     ImGui::PopID();
   }
-  if (rows.empty()) say_dim("nothing is called so");
+  if (rows.empty()) say_dim(tr("palette.none"));
   if (entered && !rows.empty()) choose(rows[typed.marked]);
   ImGui::End();
 }

@@ -15,7 +15,8 @@ void explain(const Board& desk, const std::string& command) {
   const auto [name, argument] = split_command(command);
   const Command* const known = desk.keys.commands().find(name);
   if (known == nullptr) return;
-  std::string text = argument.empty() ? known->words : fmt::format("{}: {}", known->words, argument);
+  std::string text = tr(known->words);
+  if (!argument.empty()) text += ": " + argument_words(*known, argument);
   const auto keys = desk.keys.keys_for(command);
   if (!keys.empty()) text += "    " + key_words(keys.front());
   ImGui::SetTooltip("%s", text.c_str());
@@ -23,9 +24,9 @@ void explain(const Board& desk, const std::string& command) {
 
 namespace {
 
-bool sized_button(const Board& desk, const char* label, const std::string& command, bool active, float width) {
+bool sized_button(const Board& desk, const std::string& label, const std::string& command, bool active, float width) {
   if (active) ImGui::PushStyleColor(ImGuiCol_Text, kAccent);
-  const bool pressed = ImGui::Button(label, ImVec2(width, 0.0f));
+  const bool pressed = ImGui::Button(label.c_str(), ImVec2(width, 0.0f));
   if (active) ImGui::PopStyleColor();
   explain(desk, command);
   if (pressed) desk.commands.push_back(command);
@@ -67,25 +68,34 @@ Caret caret_of(const char* id) {
 
 }  // namespace
 
-bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled) {
+bool button(const Board& desk, const std::string& label, const std::string& command, bool active, bool enabled) {
   ImGui::BeginDisabled(!enabled);
   const bool pressed = sized_button(desk, label, command, active, 0.0f);
   ImGui::EndDisabled();
   return pressed;
 }
 
-bool row_button(const Board& desk, const char* label, const std::string& command, bool active) {
+bool row_button(const Board& desk, const std::string& label, const std::string& command, bool active) {
   ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
-  const bool pressed = sized_button(desk, label, command, active, ImGui::GetContentRegionAvail().x);
+  const float room = ImGui::GetContentRegionAvail().x;
+  ImGui::SetWindowFontScale(std::min(1.0f, room / (button_width(label) - ImGui::GetStyle().ItemSpacing.x)));
+  const bool pressed = sized_button(desk, label, command, active, room);
+  ImGui::SetWindowFontScale(1.0f);
   ImGui::PopStyleVar();
   return pressed;
 }
 
-float button_width(const char* label) {
-  return ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemSpacing.x;
+float button_width(const std::string& label) {
+  return ImGui::CalcTextSize(label.c_str()).x + 2.0f * ImGui::GetStyle().FramePadding.x +
+         ImGui::GetStyle().ItemSpacing.x;
 }
 
-bool percent_slider(const char* label, float& percent, float width, float most) {
+void next_in_row(float width) {
+  ImGui::SameLine();
+  if (ImGui::GetCursorPosX() + width > ImGui::GetWindowContentRegionMax().x + 1.0f) ImGui::NewLine();
+}
+
+bool percent_slider(const std::string& label, float& percent, float width, float most) {
   const std::string id = std::string("##slider") + label;
   ImGui::BeginGroup();
   ImGui::SetNextItemWidth(width);
@@ -100,12 +110,23 @@ bool percent_slider(const char* label, float& percent, float width, float most) 
   return moved;
 }
 
-void say_dim(const char* words) {
+void say_dim(const std::string& words) {
   ImGui::PushStyleColor(ImGuiCol_Text, kDim);
   ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(words);
+  ImGui::TextUnformatted(words.c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
+}
+
+void say_fitted(ImU32 color, const std::string& words, float room) {
+  ImGui::SetWindowFontScale(std::min(1.0f, room / std::max(1.0f, ImGui::CalcTextSize(words.c_str()).x)));
+  ImGui::TextColored(ImColor(color), "%s", words.c_str());
+  ImGui::SetWindowFontScale(1.0f);
+}
+
+float combo_width(const std::string& words) {
+  return std::max(
+      120.0f, ImGui::CalcTextSize(words.c_str()).x + ImGui::GetFrameHeight() + 3.0f * ImGui::GetStyle().FramePadding.x);
 }
 
 ImTextureID texture_id(std::uint32_t texture) {

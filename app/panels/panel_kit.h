@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/panels/desk_panels.h"
+#include "app/words/text.h"
 
 namespace dubsar::app {
 
@@ -31,16 +32,22 @@ struct Board {
 /// What a thing does and which key does the same, while the pointer rests on it.
 void explain(const Board& desk, const std::string& command);
 /// Posts the command when it is pressed.
-bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled = true);
+bool button(const Board& desk, const std::string& label, const std::string& command, bool active, bool enabled = true);
 /// The same in a column of them: as wide as the column, so that all of the line is pressed.
-bool row_button(const Board& desk, const char* label, const std::string& command, bool active);
+bool row_button(const Board& desk, const std::string& label, const std::string& command, bool active);
 /// A button of text without a frame, as long as its words.
-float button_width(const char* label);
+float button_width(const std::string& label);
+/// Goes on in the same row where so wide a thing has room there, else in the next one.
+void next_in_row(float width);
 /// A slider from 0 to `most` per cent, its figure beside it, where the knob does not cover it, then its label (nothing
 /// for one that begins with ##). True when it was moved: `percent` is whole then.
-bool percent_slider(const char* label, float& percent, float width, float most = 100.0f);
+bool percent_slider(const std::string& label, float& percent, float width, float most = 100.0f);
 /// Dim words that break where the panel ends.
-void say_dim(const char* words);
+void say_dim(const std::string& words);
+/// A line in letters so small that it ends within `room`, if it has to be.
+void say_fitted(ImU32 color, const std::string& words, float room);
+/// The width of a combo in which all of such words are seen, 120 at least.
+float combo_width(const std::string& words);
 /// What ImGui calls a texture of GL's.
 ImTextureID texture_id(std::uint32_t texture);
 /// A line of text that is kept while it is typed in, and told as it changes: true then. `id` names it in its window.

@@ -23,9 +23,10 @@ std::string place_text(const glm::dvec3& mm) { return fmt::format("{:.6f},{:.6f}
 
 /// What is still to be known of a picture that is not exact.
 std::string slice_state(const SlicePane& pane) {
-  if (!pane.picture || pane.picture->frame != pane.wanted || pane.picture->image.values.empty()) return "reading";
-  if (pane.picture->done) return "coarse: too much to read all of it";
-  return fmt::format("reading, {:.0f} %", 100.0 * pane.picture->image.known);
+  if (!pane.picture || pane.picture->frame != pane.wanted || pane.picture->image.values.empty())
+    return tr("slice.reading");
+  if (pane.picture->done) return tr("slice.coarse");
+  return tr("slice.share", fmt::format("{:.0f}", 100.0 * pane.picture->image.known));
 }
 
 /// From pixels of a picture to places of the layout.
@@ -96,8 +97,8 @@ void use_mouse(const Board& desk, std::size_t which, const SlicePane& pane, cons
 void draw_labels(const SlicePane& pane, std::size_t which, const ScanView& scan, const PanelRect& rect,
                  const Placed& placed) {
   ImDrawList* const draw = ImGui::GetWindowDrawList();
-  std::string label(kSliceNames[which]);
-  if (which < 3) label += fmt::format("  {:.2f} mm", scan.cursor_mm[static_cast<int>(which)]);
+  std::string label = tr_name("which", kSliceNames[which]);
+  if (which < 3) label += local_figures(fmt::format("  {:.2f} mm", scan.cursor_mm[static_cast<int>(which)]));
   if (!pane.ready()) label += "   " + slice_state(pane);
   const ImVec2 at(placed.corner.x + 6, placed.corner.y + 3);
   draw->AddText(ImVec2(at.x + 1, at.y + 1), kNothing, label.c_str());
@@ -105,7 +106,7 @@ void draw_labels(const SlicePane& pane, std::size_t which, const ScanView& scan,
   const double mm_per_unit = pane.wanted.mm_per_px / static_cast<double>(placed.scale);
   const double mm = scale_bar_mm(mm_per_unit, kBarPx);
   const auto length = static_cast<float>(mm / mm_per_unit);
-  const std::string bar = fmt::format("{:g} mm", mm);
+  const std::string bar = local_figures(fmt::format("{:g} mm", mm));
   const ImVec2 end(placed.corner.x + rect.width - 8, placed.corner.y + rect.height - 7);
   const ImVec2 size = ImGui::CalcTextSize(bar.c_str());
   draw->AddRectFilled(ImVec2(end.x - std::max(length, size.x) - 5, end.y - size.y - 4), ImVec2(end.x + 5, end.y + 5),
@@ -120,22 +121,22 @@ void draw_head(const Board& desk) {
     const int large = desk.state.document.scan.large;
     const bool active =
         name == (large == 0 ? std::string_view("all") : kSliceNames[static_cast<std::size_t>(large - 1)]);
-    button(desk, name, std::string("slice_large ") + name, active);
+    button(desk, tr_name("which", name), std::string("slice_large ") + name, active);
     ImGui::SameLine();
   }
-  button(desk, "here", "tool slice", desk.state.desk.tool == "slice");
+  button(desk, tr("slice.here"), "tool slice", desk.state.desk.tool == "slice");
   ImGui::SameLine();
-  button(desk, "turn", "slice_turn", false);
+  button(desk, tr("slice.turn"), "slice_turn", false);
   ImGui::SameLine();
   button(desk, "+", "slice_nearer", false);
   ImGui::SameLine();
   button(desk, "-", "slice_farther", false);
   ImGui::SameLine();
-  button(desk, "grey", "slice_grey auto", false);
+  button(desk, tr("slice.grey"), "slice_grey auto", false);
   const glm::dvec3& at = desk.state.document.scan.cursor_mm;
-  std::string line = fmt::format("{:.2f}, {:.2f}, {:.2f} mm", at.x, at.y, at.z);
-  if (slices.value) line += fmt::format("   value {:.4g}", *slices.value);
-  ImGui::TextColored(ImColor(kDim), "%s", line.c_str());
+  std::string line = fmt::format("{:.2f}; {:.2f}; {:.2f} mm", at.x, at.y, at.z);
+  if (slices.value) line += "   " + tr("slice.value", fmt::format("{:.4g}", *slices.value));
+  ImGui::TextColored(ImColor(kDim), "%s", local_figures(std::move(line)).c_str());
 }
 
 }  // namespace
@@ -187,13 +188,13 @@ void draw_slices(const Board& desk) {
     draw_labels(pane, i, desk.state.document.scan, rect, placed);
     draw->PopClipRect();
   }
-  const char* const words = !slices.note.empty() ? slices.note.c_str()
-                            : !slices.scan
-                                ? "No scan is open: dubsar view FILE --scan SCAN.h5. The outline is the surface's."
-                                : "blue: no surface in the scan there, inferred";
+  const std::string& words = !slices.note.empty() ? slices.note
+                             : !slices.scan       ? tr("slice.no_scan")
+                                                  : tr("slice.inferred");
   ImGui::SetCursorScreenPos(
       ImVec2(rects[2].shown() ? rects[2].x : desk.width - kTab - panel, desk.height - kStrip - kGap - kFoot + 2));
-  ImGui::TextColored(slices.note.empty() && slices.scan ? ImColor(kPatch) : ImColor(kDim), "%s", words);
+  say_fitted(slices.note.empty() && slices.scan ? kPatch : kDim, words,
+             desk.width - kTab - 2.0f * kGap - ImGui::GetCursorScreenPos().x);
   ImGui::End();
   ImGui::PopStyleVar();
 }

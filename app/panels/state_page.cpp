@@ -4,23 +4,24 @@
 
 #include <algorithm>
 
+#include "app/words/text.h"
 #include "core/base/numbers/quantile.h"
 
 namespace dubsar::app {
 namespace {
 
-std::string_view presence_words(Presence presence) {
+const std::string& presence_words(Presence presence) {
   switch (presence) {
     case Presence::kTracked:
-      return "followed";
+      return tr("state.tracked");
     case Presence::kHeld:
-      return "out of sight, held";
+      return tr("state.held");
     case Presence::kEasing:
-      return "out of sight, going to the middle";
+      return tr("state.easing");
     case Presence::kOff:
       break;
   }
-  return "nobody is followed";
+  return tr("state.off");
 }
 
 /// Long sentences are on the terminal in full.
@@ -30,44 +31,48 @@ std::string shortened(std::string text) {
   return text;
 }
 
-std::string_view health_words(SourceHealth health) {
+const std::string& health_words(SourceHealth health) {
   switch (health) {
     case SourceHealth::kPresent:
-      return "present";
+      return tr("health.present");
     case SourceHealth::kLost:
-      return "lost";
+      return tr("health.lost");
     case SourceHealth::kMissing:
-      return "not available";
+      return tr("health.missing");
     case SourceHealth::kOff:
       break;
   }
-  return "off";
+  return tr("health.off");
 }
 
 }  // namespace
 
 std::vector<HelpSection> state_page(const StateFigures& state) {
-  HelpSection now{"Now", {}};
-  now.rows.push_back({"display", state.display});
+  const auto number_words = [](double value, int digits) {
+    return local_figures(fmt::format("{:.{}f}", value, digits));
+  };
+  HelpSection now{tr("state.now"), {}};
+  now.rows.push_back({tr("state.display"), state.display});
+  now.rows.push_back({tr("state.picture"),
+                      tr("state.views", state.traits.views, state.traits.output.width, state.traits.output.height)});
   now.rows.push_back(
-      {"picture", fmt::format("{} x {} pixels, {} view{}", state.traits.output.width, state.traits.output.height,
-                              state.traits.views, state.traits.views == 1 ? "" : "s")});
-  now.rows.push_back({"head", fmt::format("{}; eyes at {:.0f}, {:.0f}, {:.0f} mm", presence_words(state.head),
-                                          state.eyes_mm.x, state.eyes_mm.y, state.eyes_mm.z)});
-  now.rows.push_back({"pictures a second", state.interval_ms.empty()
-                                               ? "nothing moves"
-                                               : fmt::format("{:.0f} while things move",
-                                                             1e3 / std::max(quantile(state.interval_ms, 0.5), 1e-3))});
-  now.rows.push_back({"delay of input", state.input_age_ms.empty() ? "no input yet"
-                                                                   : fmt::format("median {:.1f} ms, 95 % {:.1f} ms",
-                                                                                 quantile(state.input_age_ms, 0.5),
-                                                                                 quantile(state.input_age_ms, 0.95))});
-  HelpSection sources{"Devices", {}};
+      {tr("state.head"), tr("state.head_at", presence_words(state.head), number_words(state.eyes_mm.x, 0),
+                            number_words(state.eyes_mm.y, 0), number_words(state.eyes_mm.z, 0))});
+  now.rows.push_back(
+      {tr("state.rate"),
+       state.interval_ms.empty()
+           ? tr("state.still")
+           : tr("state.moving", number_words(1e3 / std::max(quantile(state.interval_ms, 0.5), 1e-3), 0))});
+  now.rows.push_back({tr("state.delay"), state.input_age_ms.empty()
+                                             ? tr("state.no_input")
+                                             : tr("state.delays", number_words(quantile(state.input_age_ms, 0.5), 1),
+                                                  number_words(quantile(state.input_age_ms, 0.95), 1))});
+  HelpSection sources{tr("state.devices"), {}};
   int number = 1;
   for (const SourceRow& row : state.sources)
     sources.rows.push_back({fmt::format("{} {}", number++, row.spec),
                             row.reason.empty()
-                                ? std::string(health_words(row.health))
+                                ? health_words(row.health)
                                 : fmt::format("{}: {}", health_words(row.health), shortened(row.reason))});
   return {std::move(now), std::move(sources)};
 }

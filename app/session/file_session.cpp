@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/document/join.h"
+#include "app/words/text.h"
 #include "core/base/files/file_fingerprint.h"
 
 namespace dubsar::app {
@@ -55,8 +56,7 @@ FileSession::FileSession(SourceFile source, const fs::path& state_folder)
                  : *text ? parse_work(**text, place.path().string())
                          : Result<Work>(tl::unexpect, Error{ErrorKind::kNoInput, {}});
     if (text && !*text) continue;
-    if (!found)
-      told_.all.push_back(found.error().message + "; it is left as it is, and set aside when its place is needed");
+    if (!found) told_.all.push_back(tr("work.left", found.error().message));
     if (found) held[i] = found->saves;
     if (found && consider(*std::move(found), place.path(), true)) continue;
     held[i] = {};
@@ -117,14 +117,13 @@ Result<std::optional<Work>> FileSession::meet(Places& places, KeptFile& file, co
   }
   if (theirs && &file == &places.front() && !places.back().path().empty())
     if (const auto content = file_checksum(source.path); !content || *content != source.content) {
-      told.push_back(fmt::format("{} was made anew or is gone; the work on the surface that is shown is kept in {}",
-                                 name_of(source.path), places.back().path().string()));
+      told.push_back(tr("work.anew", name_of(source.path), places.back().path().string()));
       file = KeptFile();  // its place is another surface's
       return std::optional<Work>();
     }
   DUBSAR_ASSIGN(const fs::path aside, file.set_aside());
-  told.push_back(theirs ? fmt::format("the work on the surface that was here before is set aside as {}", name_of(aside))
-                        : fmt::format("{}; it is set aside as {}", theirs.error().message, name_of(aside)));
+  told.push_back(theirs ? tr("work.set_aside", name_of(aside))
+                        : tr("work.broken_aside", theirs.error().message, name_of(aside)));
   return std::optional<Work>();
 }
 
@@ -163,7 +162,7 @@ FileSession::Outcome FileSession::write(Places& places, const Work& work) {
                    : done.error();
   }
   out.behind = any && wrong && wrong->kind != ErrorKind::kPermission;
-  if (out.behind) out.told.push_back(wrong->message + "; the work is kept in one place instead of two");
+  if (out.behind) out.told.push_back(tr("work.one_place", wrong->message));
   if (wrong && !any) out.done = tl::unexpected<Error>(*std::move(wrong));
   return out;
 }
@@ -185,7 +184,7 @@ std::optional<Document> FileSession::take(Outcome outcome, const Document& docum
     behind_ = true;  // the other place
     next_ = 0;
     const std::string more = marks_more(document, joined);
-    if (!more.empty()) told_.all.push_back("another window has kept " + more + ": they are here, too");
+    if (!more.empty()) told_.all.push_back(tr("work.joined", more));
     return joined;
   }
   if (!outcome.done) {

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "app/words/text.h"
+
 namespace dubsar::app {
 namespace {
 
@@ -36,7 +38,7 @@ bool ClickTool::take(InputEvent& event) {
 
 void ClickTool::click(const glm::dvec2& at) {
   const auto picked = scene_.picked_at(at);
-  if (!picked) return scene_.ask.say("There is no surface here.");
+  if (!picked) return scene_.ask.say(tr("say.no_surface_here"));
   const glm::dvec3 there = scene_.scan_place(*picked);
   ++scene_.window.presses;
   scene_.ask.run(fmt::format("point {:.6f},{:.6f},{:.6f}", there.x, there.y, there.z), 0);

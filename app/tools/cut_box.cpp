@@ -6,6 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "app/words/text.h"
+
 namespace dubsar::app {
 namespace {
 
@@ -68,8 +70,9 @@ BoxPicture CutBox::picture(const Sight& sight) const {
     handle.towards = sight.seen(at + 0.05 * (reach.to_mm - reach.from_mm) * reach.direction) - handle.at;
     handle.before = faces(side, sight);
     handle.distance_mm = glm::distance(sight.camera_of_model(), at);
-    handle.words = fmt::format("{}: {:.1f} mm cut away, {:.0f} %", kBoxSides[side].name, reach.to_mm - at_mm_[side],
-                               percent(side, at_mm_[side]));
+    handle.words = local_figures(tr("cut.handle", tr_name("box_side", kBoxSides[side].name),
+                                    fmt::format("{:.1f}", reach.to_mm - at_mm_[side]),
+                                    fmt::format("{:.0f}", percent(side, at_mm_[side]))));
     out.handles.push_back(std::move(handle));
   }
   return out;

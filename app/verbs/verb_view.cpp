@@ -11,6 +11,7 @@
 #include "app/cli/input_options.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/cli/window_language.h"
 #include "app/verbs/told_session.h"
 #include "app/verbs/view_files.h"
 #include "app/verbs/view_kiosk.h"
@@ -33,7 +34,7 @@ struct What {
 };
 
 struct Panel {
-  std::string display = "mono", size, monitor;
+  std::string display = "mono", size, monitor, language;
   std::vector<std::string> plugins;  // files
   std::vector<std::string> also;     // displays
   int samples = 0, bridge_port = kBridgePort, ui_scale = 0;
@@ -267,6 +268,7 @@ Result<std::vector<std::filesystem::path>> good_files(const ViewRequest& options
 }
 
 Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
+  DUBSAR_TRY(choose_language(options.panel.language, !options.panel.offscreen && options.time.fps == 0));
   if (!options.what.kiosk.empty()) return run_kiosk_of(options, progress);
   DUBSAR_ASSIGN(ViewOptions view, view_options(options));
   if (options.made.tour.empty())
@@ -295,6 +297,7 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
     view.around.title = first.title;
   }
   DUBSAR_ASSIGN(const ViewResult done, run_view(first.mesh, view, progress, {}, &shelf));
+  keep_language();
   VerbResult out = describe_session(options.panel.offscreen ? options.panel.display : done.display, done,
                                     done.triangles, view.time.fps > 0);
   if (!options.panel.offscreen) add_intervals(done, out);
@@ -334,8 +337,7 @@ Verb add_view_verb(Arguments program) {
       .called("FILE.so")
       .one_word_each_time();
   command.value("--input", options->people.inputs, "NAME[:options],...: " + sources);
-  command.reads("--script", options->people.script, "simulated people: the same as --input scripted:FILE")
-      .called("FILE");
+  command.reads("--script", options->people.script, "simulated people: as --input scripted:FILE").called("FILE");
   command
       .reads("--steps", options->people.steps,
              "commands with the seconds when they are said, one a line (docs/guide.md)")
@@ -361,9 +363,7 @@ Verb add_view_verb(Arguments program) {
       .value("--fps", options->time.fps,
              "simulated time: N frames a second however long they take (offscreen 30; a window: real time)")
       .range(1.0, 240.0);
-  command
-      .value("--seconds", options->time.seconds,
-             "end after this time at the latest (offscreen 60, a window stays open)")
+  command.value("--seconds", options->time.seconds, "end after this time at the latest (60; a window: never)")
       .range(0.1, 3600.0);
   command.value("--bridge-port", options->panel.bridge_port, "of Looking Glass Bridge, for panel auto").range(0, 65535);
   command
@@ -377,6 +377,8 @@ Verb add_view_verb(Arguments program) {
       .separated_by(',');
   command.value("--ui-scale", options->panel.ui_scale, "size of letters and panels in percent (as the desktop says)")
       .range(50, 400);
+  command.value("--language", options->panel.language,
+                "of the window: de, en or FILE.json (as last, else the desktop's)");
   command.value("--samples", options->panel.samples, "samples per pixel side (2; offscreen 1)").range(1, 8);
   command.footer(
       "In the window: F1 shows what mouse, keys and hands do and how the sources are; F2 goes to the next display, F11 "

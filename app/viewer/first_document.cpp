@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "app/tools/surface_tools.h"
+#include "app/words/text.h"
 
 namespace dubsar::app {
 namespace {
@@ -76,17 +77,14 @@ FirstDocument first_document(const ViewOptions& options, const TriMesh& mesh) {
 }
 
 std::string first_words(const SessionWork& work, bool worn) {
-  if (work.restored) return "What you measured and noted here last time is here again.";
+  if (work.restored) return tr("say.restored");
   if (!work.doubt.empty()) {
     std::string doubt = work.doubt;
     if (doubt[0] >= 'a' && doubt[0] <= 'z') doubt[0] = static_cast<char>(doubt[0] - 'a' + 'A');
-    return doubt + ". Shift+Home: half a turn. Ctrl+Shift+Home: the other side. Ctrl+Home: this is the obverse.";
+    return tr("say.doubt", doubt);
   }
-  if (worn)
-    return "Reach for the tablet and close your hand or squeeze the controller: it is in your hand. The other hand is "
-           "the "
-           "light; both hands make it larger.";
-  return "Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.";
+  if (worn) return tr("say.worn");
+  return tr("say.first");
 }
 
 }  // namespace dubsar::app

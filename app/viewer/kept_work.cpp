@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/document/join.h"
+#include "app/words/text.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
@@ -37,7 +38,7 @@ void KeptWork::leave(Editor& editor) {
   constexpr std::size_t kMostLeft = 8;  // each has up to a thousand states of its document
   if (const auto done = leave_session(editor); !done) {
     log_warning("{}", done.error().message);
-    untold_ = done.error().message + "; it stays open in memory: go back and save_copy, or make room";
+    untold_ = tr("say.in_memory", done.error().message);
   }
   const std::string key = file_key(editor.document());
   if (key.empty()) return;
@@ -55,7 +56,7 @@ bool KeptWork::keep(Editor& editor, TimestampNs now) {
   const std::string wrong = kept ? std::string() : kept.error().message;
   if (!wrong.empty() && wrong != untold_) {
     log_warning("{}", wrong);
-    say_(wrong + "; save_copy writes a copy elsewhere");
+    say_(tr("say.copy_elsewhere", wrong));
   }
   if (!kept)
     untold_ = wrong;
@@ -87,7 +88,7 @@ bool KeptWork::may_end(Editor* editor) {
   const auto done = leave_all(editor);
   if (done || std::exchange(asked_, true)) return true;
   log_warning("{}", done.error().message);
-  say_(done.error().message + "; save_copy FILE.json keeps it elsewhere, Esc again ends without it");
+  say_(tr("say.end_without", done.error().message));
   return false;
 }
 
@@ -111,7 +112,7 @@ void KeptWork::say_what_was_found(const Editor& editor, std::string first) {
   Document all;
   for (const OtherWork& other : editor.others()) all = add_marks(all, other.work.document);
   if (const std::string more = marks_more(editor.document(), add_marks(editor.document(), all)); !more.empty())
-    first = more + " of the surface that was here before are kept. Ctrl+K take_over: bring them here.";
+    first = tr("say.found", more);
   if (!untold_.empty()) first = untold_;
   tell(std::move(first));
 }

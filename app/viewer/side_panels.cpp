@@ -8,6 +8,7 @@
 #include "app/tools/window_input.h"
 #include "app/viewer/presenter/window_presenter.h"
 #include "app/viewer/viewer.h"
+#include "app/words/text.h"
 #include "core/base/system/log.h"
 #include "core/base/system/second.h"
 #include "core/image_io/png_file.h"
@@ -301,7 +302,7 @@ std::string SidePanels::trouble() const {
   std::string out;
   for (const auto& panel : panels_)
     if (!panel->state.trouble.empty())
-      out += fmt::format("{}{} cannot be shown: {}", out.empty() ? "" : "; ", panel->name, panel->state.trouble);
+      out += (out.empty() ? "" : "; ") + tr("say.panel_trouble", panel->name, panel->state.trouble);
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/stage/object_places.h"
+#include "app/words/text.h"
 #include "core/base/system/log.h"
 #include "core/base/system/second.h"
 
@@ -43,7 +44,15 @@ Viewer::~Viewer() {
 void Viewer::run(std::string_view text, std::uint64_t merge) {
   const Command* const command = said_.commands->find(split_command(text).first);
   if (command != nullptr && command->steers && !input_.steering->claim_for_keys(given_.clock.now())) return;
+  if (command != nullptr && command->enabled && !command->enabled(*editor_))
+    return say(tr("say.nothing_to_do", tr(command->words)));
+  if (command != nullptr && needs_surface(*command)) return say(tr("say.no_surface", tr(command->words)));
   if (const auto done = obey(text, merge); !done) say(done.error().message);
+}
+
+/// And there is none.
+bool Viewer::needs_surface(const Command& command) const {
+  return !has_surface() && given_.shelf != nullptr && command.group != kWindowGroup && command.group != kFileGroup;
 }
 
 Result<void> Viewer::obey(std::string_view command, std::uint64_t merge) {
@@ -51,8 +60,7 @@ Result<void> Viewer::obey(std::string_view command, std::uint64_t merge) {
   editor_->merge_with(merge);
   const Command* const known = said_.commands->find(split_command(command).first);
   if (known == nullptr || known->name != "close") files_.kept.goes_on();
-  if (known != nullptr && !has_surface() && given_.shelf != nullptr && known->group != kWindowGroup &&
-      known->group != kFileGroup)
+  if (known != nullptr && needs_surface(*known))
     return fail(ErrorKind::kUsage, "{}: there is no surface yet; Ctrl+O opens one", known->name);
   auto done = said_.commands->run(command, *editor_);
   editor_->merge_with(0);
@@ -114,7 +122,7 @@ Document Viewer::guided_document(const GuidedScene& scene) const {
 void Viewer::set_trouble(const std::string& words) {
   if (words == present_.led.trouble) return;
   present_.led.trouble = words;
-  say(words.empty() ? "all panels are there" : words);
+  say(words.empty() ? tr("say.all_panels") : words);
 }
 
 void Viewer::presented(TimestampNs now) {
@@ -151,7 +159,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
     if (const auto kept = input_.recorder->status(); !kept) {
       input_.recording_failed = true;
       log_warning("the recording has ended: {}", kept.error().message);
-      say("the recording has ended: " + kept.error().message);
+      say(tr("say.recording_ended", kept.error().message));
     }
   update_overlay(now);
   if (has_surface() && files_.kept.keep(*editor_, now)) follow();

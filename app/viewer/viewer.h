@@ -168,6 +168,7 @@ class Viewer final {
   void use_key(const InputEvent& event, bool of_source);
   void run(std::string_view command, std::uint64_t merge = 0);
   Result<void> obey(std::string_view command, std::uint64_t merge);
+  bool needs_surface(const Command& command) const;
   void say(std::string words);
   void keep_up();
   void follow();

@@ -8,6 +8,7 @@
 #include "app/panels/state_page.h"
 #include "app/stage/marks.h"
 #include "app/viewer/viewer.h"
+#include "app/words/language.h"
 #include "core/base/system/second.h"
 
 namespace dubsar::app {
@@ -51,6 +52,7 @@ PanelState Viewer::panel_state(TimestampNs now) {
   PanelState out;
   out.line.title = title().empty() ? "dubsar" : title();
   out.line.display = display();
+  out.line.language = language().code();
   if (has_surface())
     out.line.side =
         kSideNames[static_cast<std::size_t>(facing_side(present_.report.view.rotation, document().home.rotation))];
@@ -125,7 +127,7 @@ void Viewer::update_overlay(TimestampNs now) {
   text.notice_opacity =
       over ? 1.0 : std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
   if (const auto share = stage_->measuring()) {
-    const std::string measuring = fmt::format("measuring the surface: {:.0f} %", 100.0 * *share);
+    const std::string measuring = tr("say.measuring", fmt::format("{:.0f}", 100.0 * *share));
     text.notice = text.notice.empty() ? measuring : fmt::format("{} ({})", text.notice, measuring);
     text.notice_opacity = 1.0;
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 
+#include "app/words/text.h"
 #include "core/base/numbers/inch.h"
 #include "core/base/system/utc_day.h"
 #include "core/image_io/png_file.h"
@@ -43,13 +44,13 @@ Result<void> ViewerPlace::switch_display(int step) {
   DUBSAR_TRY(to_.displays.step(step));
   if (step == 0) return {};
   to_.scene.editor->desk().panels = to_.displays.panels_wanted();
-  say("display " + to_.displays.name());
+  say(tr("say.display", to_.displays.name()));
   return {};
 }
 
 Result<void> ViewerPlace::swap_eyes() {
   DUBSAR_TRY(to_.scene.stage->swap_eyes());
-  say("left and right eye exchanged");
+  say(tr("say.eyes"));
   return {};
 }
 
@@ -96,7 +97,7 @@ Result<void> ViewerPlace::write_slice(const std::string& path, std::size_t which
   DUBSAR_ASSIGN(const Image image, to_.slices.whole(which));
   const glm::dvec3& voxel = to_.scene.mesh->frame.input_voxel.mm;
   DUBSAR_TRY(write(target, image, kMmPerInch / std::min({voxel.x, voxel.y, voxel.z})));
-  say(fmt::format("written: {}, {} x {} pixels", target.string(), image.width, image.height));
+  say(tr("say.picture", target.string(), image.width, image.height));
   return {};
 }
 
@@ -110,8 +111,7 @@ Result<void> ViewerPlace::picture(const std::string& path, int factor) {
   const double scale = glm::length(glm::dvec3(stage.screen_from_model()[0]));
   const double dpi = image.height / stage.window_mm().y * scale * kMmPerInch;
   DUBSAR_TRY(write(target, image, dpi));
-  say(fmt::format("written: {}, {} x {} pixels, {:.0f} dots an inch at life size", target.string(), image.width,
-                  image.height, dpi));
+  say(tr("say.picture_dpi", target.string(), image.width, image.height, fmt::format("{:.0f}", dpi)));
   return {};
 }
 

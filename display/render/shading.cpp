@@ -28,29 +28,28 @@ ShapeColors shape_colors_of(ColorMap map) {
 constexpr double kDeepest = 0.06;  // of the base colour's bytes, for the strongest cup at any contrast
 
 struct Preset {
-  std::string_view name, words;
+  std::string_view name;
   ColorMap map;
   bool ambient_occlusion, lit;
   bool rakes = false;
 };
-constexpr std::array<Preset, 17> kPresets{
-    {{"relief", "clay, hollows darker", ColorMap::kBlackWhite, true, true},
-     {"phong", "clay in plain light", ColorMap::kPlain, false, true},
-     {"raking", "raking light", ColorMap::kPlain, false, true, true},
-     {"table", "ridges and hollows, many colours", ColorMap::kTable, false, false},
-     {"black-white", "ridges white, hollows black", ColorMap::kBlackWhite, false, false},
-     {"sky-sun", "ridges orange, hollows blue", ColorMap::kSkySun, false, false},
-     {"ao", "deep places dark", ColorMap::kPlain, true, false},
-     {"table-ao", "many colours, deep places dark", ColorMap::kTable, true, false},
-     {"black-white-ao", "white and black, deep places dark", ColorMap::kBlackWhite, true, false},
-     {"sky-sun-ao", "orange and blue, deep places dark", ColorMap::kSkySun, true, false},
-     {"msii", "wedges dark, in any light (MSII)", ColorMap::kIntegral, false, false},
-     {"radiance", "clay, ridges lifted", ColorMap::kPlain, false, true},
-     {"mean-curvature", "mean curvature", ColorMap::kMean, false, false},
-     {"gaussian-curvature", "Gaussian curvature", ColorMap::kGaussian, false, false},
-     {"shape-index", "shape index", ColorMap::kShapeIndex, false, false},
-     {"curvedness", "curvedness", ColorMap::kCurvedness, false, false},
-     {"photograph", "its own colours, of a photograph", ColorMap::kPlain, false, false}}};
+constexpr std::array<Preset, 17> kPresets{{{"relief", ColorMap::kBlackWhite, true, true},
+                                           {"phong", ColorMap::kPlain, false, true},
+                                           {"raking", ColorMap::kPlain, false, true, true},
+                                           {"table", ColorMap::kTable, false, false},
+                                           {"black-white", ColorMap::kBlackWhite, false, false},
+                                           {"sky-sun", ColorMap::kSkySun, false, false},
+                                           {"ao", ColorMap::kPlain, true, false},
+                                           {"table-ao", ColorMap::kTable, true, false},
+                                           {"black-white-ao", ColorMap::kBlackWhite, true, false},
+                                           {"sky-sun-ao", ColorMap::kSkySun, true, false},
+                                           {"msii", ColorMap::kIntegral, false, false},
+                                           {"radiance", ColorMap::kPlain, false, true},
+                                           {"mean-curvature", ColorMap::kMean, false, false},
+                                           {"gaussian-curvature", ColorMap::kGaussian, false, false},
+                                           {"shape-index", ColorMap::kShapeIndex, false, false},
+                                           {"curvedness", ColorMap::kCurvedness, false, false},
+                                           {"photograph", ColorMap::kPlain, false, false}}};
 
 /// A lamp beside the tablet in a dark room. Level clay is a middle grey; walls towards the lamp come close to white.
 Light raking_light() {
@@ -78,12 +77,6 @@ std::vector<std::string_view> shading_preset_names() {
   std::vector<std::string_view> names;
   for (const Preset& preset : kPresets) names.push_back(preset.name);
   return names;
-}
-
-std::string_view shading_preset_words(std::string_view name) {
-  for (const Preset& preset : kPresets)
-    if (preset.name == name) return preset.words;
-  return name;
 }
 
 Result<Shading> shading_preset(std::string_view name) {

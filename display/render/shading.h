@@ -156,8 +156,6 @@ struct Shading {
 /// list, for another name.
 Result<Shading> shading_preset(std::string_view name);
 std::vector<std::string_view> shading_preset_names();
-/// What a preset shows, in a few words for people; of another name: itself.
-std::string_view shading_preset_words(std::string_view name);
 
 constexpr int kShapeRows = 128, kAoColumns = 64;
 /// Colour of shape class s (0..127) under ambient light a (0..63) at [a * 128 + s]: what the vertex shader looks up. Of

@@ -7,6 +7,7 @@
 
 #include "app/commands/key_table.h"
 #include "app/commands/sides.h"
+#include "app/words/language.h"
 
 namespace dubsar::app {
 
@@ -108,6 +109,7 @@ struct Bench {
     return done ? "accepted" : done.error().message;
   }
   const Document& now() const { return editor.document(); }
+  ~Bench() { EXPECT_TRUE(use_language("en")); }
 };
 
 /// A way to say each command that needs to be told something that its table does not offer. A new command of that kind

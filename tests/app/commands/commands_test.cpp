@@ -230,10 +230,11 @@ TEST(Commands, WindowCommandsReachThePlaceAndChangeNoDocument) {
   EXPECT_EQ(bench.editor.history().undo_depth(), 0u);
 }
 
-/// The sample action: all that a new one needs.
+/// The sample action: all that a new one needs, besides its row "command.stand_on_end" in app/words/en.json.
 Command stand_on_end() {
-  Command out{"stand_on_end", "View", "stand the tablet on its narrow side", {{"ctrl+e"}}};
-  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+  Command out{"stand_on_end", "group.view", {{"ctrl+e"}}};
+  out.words = "command.upright";  // the table of the program has no row for it
+  out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     next.now.rotation = turn_of({0, 0, 1.5707963267948966}) * next.home.rotation;
     editor.change(std::move(next), why, Way::kGlide);
@@ -247,7 +248,7 @@ TEST(Commands, ANewActionIsOneCommand) {
   bench.commands.add(stand_on_end());
   bench.run("stand_on_end");  // scripts
   EXPECT_LT(apart_deg(bench.now().now.rotation, turn_of({0, 0, 1.5707963267948966})), 1e-9);
-  EXPECT_EQ(bench.editor.history().undo_words(), "stand the tablet on its narrow side");
+  EXPECT_EQ(bench.editor.history().undo_words(), "stand_on_end");
   bench.run("undo");
   EXPECT_EQ(bench.now(), two_parts());
   const KeyTable keys = KeyTable::create(bench.commands, {{"x", "stand_on_end"}}).value();  // mapping files

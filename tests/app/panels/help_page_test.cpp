@@ -14,7 +14,7 @@ namespace {
 /// The heading under which a row's command stands.
 std::string_view find_group(const CommandTable& commands, const std::string& text) {
   const Command* const command = commands.find(split_command(text).first);
-  return command == nullptr ? std::string_view() : std::string_view(command->group);
+  return command == nullptr ? std::string_view() : command->group.english();
 }
 
 TEST(HelpPage, SaysKeysAsPeopleDo) {
@@ -52,10 +52,10 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "Mouse", "wheel"), "zoom");
   EXPECT_EQ(find(page, "Back", "Backspace  Ctrl+Z"), "undo");
   EXPECT_EQ(find(page, "This window", "P  L  T  M  Shift+N  C  Shift+S  Shift+K"),
-            "panel: parts, light, style, measures, notes, cuts, slices, film");
+            "panel: Parts, Light, Style, Measures, Notes, Cuts, Slices, Film");
   EXPECT_EQ(find(page, "Light", "Alt+1 to Alt+8"), "raking light from one of eight directions");
   EXPECT_EQ(find(page, "Measures", "V  D  A  W  F  N  I  J"),
-            "what a click does: turn, distance, angle, depth, profile, note, line, slice");
+            "what a click does: Turn, Distance, Angle, Depth, Profile, Note, Line, Slice");
   EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
   EXPECT_EQ(find(page, "Hands", "grab and pull"), "zoom");
@@ -98,7 +98,8 @@ TEST(Palette, FindsCommandsByTheirWordsAndSaysTheirKeys) {
   EXPECT_EQ(first("unpack 37").text, "unpack 37");
   EXPECT_TRUE(palette_rows(keys, "xyzzy", 12).empty());
   EXPECT_EQ(palette_rows(keys, "", 12).size(), 12u);
-  EXPECT_NE(find_group(commands, palette_rows(keys, "", 12)[0].text), kWindowGroup) << "what is done to the object";
+  EXPECT_NE(find_group(commands, palette_rows(keys, "", 12)[0].text), kWindowGroup.english())
+      << "what is done to the object";
   std::size_t found = 0;  // nothing is left out
   for (const Command& command : commands.all()) {
     if (command.name == "palette") continue;
