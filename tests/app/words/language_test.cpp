@@ -9,12 +9,12 @@
 #include <regex>
 #include <set>
 
-#include "app/commands/key_table.h"
 #include "app/kiosk/operator_menu.h"
 #include "app/words/language_files.h"
 #include "core/base/files/atomic_file.h"
 #include "display/render/mesh/surface_field.h"
 #include "display/render/shading.h"
+#include "tests/app/commands/bench.h"
 #include "tests/app/words/made_up_language.h"
 
 namespace dubsar::app {
@@ -147,6 +147,24 @@ TEST_F(WindowLanguage, WhatPeopleReadByNamesHasTexts) {
     const std::string name(field_scale(style).name);
     EXPECT_NE(tr_name("legend", name), name);
   }
+}
+
+// Said over the picture, by any command.
+TEST_F(WindowLanguage, WhatCommandsSayComesFromTheTable) {
+  const fs::path file = fs::path(::testing::TempDir()) / "zz.json";
+  ASSERT_TRUE(write_file_atomically(file, made_up_file()));
+  Bench bench;
+  int said = 0;
+  for (const std::string& text : ways_to_say(bench.commands)) {
+    ASSERT_TRUE(use_language(file.string()));
+    bench.place.said.clear();
+    static_cast<void>(bench.commands.run(text, bench.editor));
+    const bool figures = bench.place.said == "5.000 mm" || bench.place.said == "0.00\u00b0";
+    if (bench.place.said.empty() || figures || text.starts_with("ui_language")) continue;
+    ++said;
+    EXPECT_NE(bench.place.said.find("\u00ab"), std::string::npos) << text << " says " << bench.place.said;
+  }
+  EXPECT_GT(said, 10);
 }
 
 // Dead texts cost every translator time.
