@@ -329,7 +329,7 @@ Result<void> Stage::paint(const Surface& target, Field field) {
   Parts::Layers& layers = p.layers;
   if (layers.overlay != nullptr && p.sink->traits().worn) DUBSAR_TRY(p.paint_page());
   layers.overlay_changed = false;
-  const bool over = layers.overlay != nullptr || p.decor.shown.any();
+  const bool over = layers.overlay != nullptr || p.overlay_marks.shown.any();
   if (!over || p.sink->traits().worn) return p.sink->compose(*layers.array, target, field);
   const ViewArray& array = *layers.array;
   if (!layers.overlaid) {
@@ -337,7 +337,7 @@ Result<void> Stage::paint(const Surface& target, Field field) {
   }
   glCopyImageSubData(array.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, layers.overlaid->coded(), GL_TEXTURE_2D_ARRAY, 0,
                      0, 0, 0, array.width(), array.height(), array.layers());
-  DUBSAR_TRY(p.paint_decor(*layers.overlaid));
+  DUBSAR_TRY(p.paint_overlay_marks(*layers.overlaid));
   if (layers.overlay != nullptr) DUBSAR_TRY(layers.overlay->paint(*layers.overlaid, p.plane.window));
   return p.sink->compose(*layers.overlaid, target, field);
 }

@@ -100,17 +100,17 @@ struct Shown {
 };
 
 /// What stands over the surface in its own depth, in every view where it is there.
-struct Lens {
+struct Magnifier {
   glm::dvec3 at_mm{0.0};  ///< of the model
   double factor = 3.0;    ///< 2 to 8
   double size = 0.34;     ///< across, of the view's height
-  friend bool operator==(const Lens&, const Lens&) = default;
+  friend bool operator==(const Magnifier&, const Magnifier&) = default;
 };
-struct Decor {
-  std::optional<Lens> lens{};
+struct OverlayMarks {
+  std::optional<Magnifier> magnifier{};
   std::optional<glm::dvec3> cursor_mm{};  ///< of the model
-  bool any() const noexcept { return lens || cursor_mm; }
-  friend bool operator==(const Decor&, const Decor&) = default;
+  bool any() const noexcept { return magnifier || cursor_mm; }
+  friend bool operator==(const OverlayMarks&, const OverlayMarks&) = default;
 };
 
 /// Draws over all views before they are composed, so that it stands at the same place for both eyes: on the panel's
@@ -179,7 +179,7 @@ class Stage {
   std::optional<double> measuring() const noexcept;
 
   /// Drawn over the pictures from the next paint() on; what is under the glass is exact.
-  void set_decor(const Decor& decor);
+  void set_overlay_marks(const OverlayMarks& marks);
   /// Where the middle of the eyes sees the surface at a place of the window (heights of it from its middle, y up), in
   /// mm of the model; none: there is none. Draws that pixel alone. Errors of the renderer.
   Result<std::optional<glm::dvec3>> place_at(const glm::dvec2& at);

@@ -18,7 +18,7 @@
 
 namespace dubsar::app {
 
-inline constexpr int kMostLensPx = 2048, kLensSamples = 2;
+inline constexpr int kMostMagnifierPx = 2048, kMagnifierSamples = 2;
 inline constexpr TimestampNs kRestNs = 150'000'000;  // before coarse views are made exact
 
 struct Stage::Parts {
@@ -65,7 +65,7 @@ struct Stage::Parts {
     TimestampNs moved_at = 0;
   };
   struct Over {
-    Decor shown;
+    OverlayMarks shown;
     GlProgram program;
     GlVertexArray no_vertices;
     GlFramebuffer framebuffer;
@@ -88,7 +88,7 @@ struct Stage::Parts {
   Next next;
   Painted painted;
   Cost cost;
-  Over decor;
+  Over overlay_marks;
   std::array<LabelLayout, 2> layouts;  // of the halves; of one state the second
 
   explicit Parts(const StageOptions& given) : options(given) {}
@@ -129,7 +129,7 @@ struct Stage::Parts {
   Result<void> refine_half(TimestampNs end);
   Result<void> fill_layers();
   Result<void> paint_moved();
-  Result<void> paint_decor(ViewArray& array);
+  Result<void> paint_overlay_marks(ViewArray& array);
   Result<void> stamp(ViewArray& array, int layer, const glm::dvec2& corner, int side, bool ring);
   Result<void> refine();
   Result<void> paint_page();

@@ -18,17 +18,17 @@ void MarksTool::contribute(Shown& shown) {
 }
 
 void MarksTool::point() {
-  Decor decor;
+  OverlayMarks marks;
   const Pointing& seen = scene_.desk().pointing;
   if ((seen.magnify > 0 || seen.cursor) && seen.at) {
     const auto place = scene_.stage->place_at(*seen.at);
     if (!place) log_warning("{}", place.error().message);
     if (place && *place) {
-      if (seen.magnify > 0) decor.lens = Lens{**place, seen.magnify};
-      if (seen.cursor) decor.cursor_mm = **place;
+      if (seen.magnify > 0) marks.magnifier = Magnifier{**place, seen.magnify};
+      if (seen.cursor) marks.cursor_mm = **place;
     }
   }
-  scene_.stage->set_decor(decor);
+  scene_.stage->set_overlay_marks(marks);
 }
 
 }  // namespace dubsar::app

@@ -206,7 +206,7 @@ TEST(FirstPicture, TwoStatesBesideEachOtherComeInPiecesAndAreThoseOfOneGo) {
   EXPECT_EQ(seen, 2) << "each half is seen when it is whole";
   EXPECT_EQ(surface.read().value().pixels, whole.pixels);
   // A glass over the middle of the present state shows it, whichever half was drawn last.
-  stage->set_decor({Lens{{0.0, 0.0, 10.0}, 4.0, 0.3}, {}});
+  stage->set_overlay_marks({Magnifier{{0.0, 0.0, 10.0}, 4.0, 0.3}, {}});
   ASSERT_TRUE(stage->paint(surface.surface()));
   const Image under = surface.read().value();
   const auto* const clay = under.at(3 * under.width / 4, under.height / 2);
