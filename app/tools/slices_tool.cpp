@@ -10,7 +10,7 @@ constexpr double kToolsWidth = 82.0, kTabWidth = 90.0;  // what stands at the si
 }  // namespace
 
 void SlicesTool::begin(std::optional<ScanLink> link) {
-  desk_ = std::make_unique<SliceDesk>(*scene_.mesh, scene_.stage->box_mm(), std::move(link));
+  pictures_ = std::make_unique<SlicePictures>(*scene_.mesh, scene_.stage->box_mm(), std::move(link));
 }
 
 void SlicesTool::update(TimestampNs) {
@@ -25,16 +25,16 @@ void SlicesTool::contribute(Shown& shown) {
   const glm::dvec2& layout = scene_.window.layout;
   const ScanView& view = scene_.document().scan;
   const glm::dvec2 px = glm::dvec2(traits.view.width, traits.view.height) / layout;
-  desk_->update(view, scene_.window.slices, px);
+  pictures_->update(view, scene_.window.slices, px);
   if (scene_.window.waits) {  // the same script gives the same pictures
-    desk_->wait();
-    desk_->update(view, scene_.window.slices, px);
+    pictures_->wait();
+    pictures_->update(view, scene_.window.slices, px);
   }
   const double left =
       layout.x - static_cast<double>(slices_width(static_cast<float>(layout.x))) - kTabWidth - kToolsWidth;
   shown.view.pan.x += scene_.window.aside;
   shown.fit *= std::min(1.0, left / std::min(layout.x, layout.y));
-  for (LinesItem& lines : desk_->lines(view, shown.parts)) shown.marks.lines.push_back(std::move(lines));
+  for (LinesItem& lines : pictures_->lines(view, shown.parts)) shown.marks.lines.push_back(std::move(lines));
 }
 
 }  // namespace dubsar::app

@@ -285,18 +285,18 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
     DUBSAR_ASSIGN(const TriMesh mesh, load_mesh(asked, progress));
     return write_tour(options.made.tour, mesh, view);
   }
-  Shelf shelf(surface_reader(view, file_reading(options, scan)), live ? recent_list() : std::filesystem::path());
+  FileLoader loader(surface_reader(view, file_reading(options, scan)), live ? recent_list() : std::filesystem::path());
   OpenedSurface first;
   if (live) {  // the window is there before what it shows
-    DUBSAR_TRY(shelf.open(files));
+    DUBSAR_TRY(loader.open(files));
     log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
   } else {
     DUBSAR_ASSIGN(first, surface_reader(view, file_reading(options, scan))(files.front(), progress, {}));
-    shelf.has(files);
+    loader.has(files);
     view.work = first.work;
     view.around.title = first.title;
   }
-  DUBSAR_ASSIGN(const ViewResult done, run_view(first.mesh, view, progress, {}, &shelf));
+  DUBSAR_ASSIGN(const ViewResult done, run_view(first.mesh, view, progress, {}, &loader));
   keep_language();
   VerbResult out = describe_session(options.panel.offscreen ? options.panel.display : done.display, done,
                                     done.triangles, view.time.fps > 0);

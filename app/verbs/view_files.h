@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/cli/input_options.h"
-#include "app/session/shelf.h"
+#include "app/session/file_loader.h"
 
 namespace dubsar::app {
 

@@ -71,9 +71,9 @@ struct ObjectSession {
       return surface;
     };
     if (view.window && view.time.fps == 0) {
-      Shelf shelf(read, {});
-      DUBSAR_TRY(shelf.open({object.file}));
-      return run_view({}, view, progress, {}, &shelf, &kept);
+      FileLoader loader(read, {});
+      DUBSAR_TRY(loader.open({object.file}));
+      return run_view({}, view, progress, {}, &loader, &kept);
     }
     DUBSAR_ASSIGN(const OpenedSurface surface, read(object.file, progress, {}));
     ViewOptions with = view;

@@ -14,42 +14,42 @@ Error one_surface() { return {ErrorKind::kUsage, "this session shows one surface
 }  // namespace
 
 Result<void> FileList::open(const std::vector<fs::path>& files) {
-  return shelf_ != nullptr ? shelf_->open(files) : tl::unexpected<Error>(one_surface());
+  return loader_ != nullptr ? loader_->open(files) : tl::unexpected<Error>(one_surface());
 }
 
 Result<void> FileList::open_recent(std::size_t number) {
-  if (shelf_ == nullptr) return tl::unexpected<Error>(one_surface());
-  const std::vector<std::string> recent = read_recent(shelf_->recent_list());
+  if (loader_ == nullptr) return tl::unexpected<Error>(one_surface());
+  const std::vector<std::string> recent = read_recent(loader_->recent_list());
   if (number < 1 || number > recent.size())
     return fail(ErrorKind::kUsage, "open_recent: {} found, expected 1 to {}", number, recent.size());
   return open({fs::path(recent[number - 1])});
 }
 
 Result<void> FileList::step(int by) {
-  return shelf_ != nullptr ? shelf_->step(by) : tl::unexpected<Error>(one_surface());
+  return loader_ != nullptr ? loader_->step(by) : tl::unexpected<Error>(one_surface());
 }
 
 std::string FileList::present_folder() const {
   std::error_code error;
-  if (shelf_ != nullptr && shelf_->shown()) return shelf_->files()[*shelf_->shown()].parent_path().string();
-  if (shelf_ != nullptr)
-    for (const std::string& recent : read_recent(shelf_->recent_list()))
+  if (loader_ != nullptr && loader_->shown()) return loader_->files()[*loader_->shown()].parent_path().string();
+  if (loader_ != nullptr)
+    for (const std::string& recent : read_recent(loader_->recent_list()))
       if (const fs::path folder = fs::path(recent).parent_path(); fs::is_directory(folder, error))
         return folder.string();
   return fs::current_path(error).string();
 }
 
 std::string FileList::title(const std::string& shown) const {
-  return title_words(shown, shelf_ != nullptr ? shelf_->opening() : std::nullopt);
+  return title_words(shown, loader_ != nullptr ? loader_->opening() : std::nullopt);
 }
 
 FilesState FileList::state(const Choosing& choosing, bool has_surface, TimestampNs now) {
   FilesState out;
   out.has_surface = has_surface;
-  if (shelf_ == nullptr) return out;
-  for (const fs::path& file : shelf_->files()) out.names.push_back(file.filename().string());
-  out.shown = shelf_->shown().value_or(0);
-  out.opening = shelf_->opening();
+  if (loader_ == nullptr) return out;
+  for (const fs::path& file : loader_->files()) out.names.push_back(file.filename().string());
+  out.shown = loader_->shown().value_or(0);
+  out.opening = loader_->opening();
   if (!choosing.open) {
     listed_ = -1;
     return out;
@@ -58,7 +58,7 @@ FilesState FileList::state(const Choosing& choosing, bool has_surface, Timestamp
   if (listed_ < 0 || now - listed_ >= kListEveryNs || listing_.folder != folder) {
     listing_ = list_folder(folder);
     recent_.clear();
-    for (std::string& path : read_recent(shelf_->recent_list())) {
+    for (std::string& path : read_recent(loader_->recent_list())) {
       std::error_code error;
       const bool there = fs::exists(path, error);
       recent_.push_back({std::move(path), there});

@@ -7,18 +7,18 @@
 
 #include "app/document/ui_state.h"
 #include "app/panels/open_dialogue.h"
-#include "app/session/shelf.h"
+#include "app/session/file_loader.h"
 
 namespace dubsar::app {
 
 /// One thread: that of the session.
 class FileList {
  public:
-  /// `shelf` outlives it; null: the session shows one surface, and no other.
-  explicit FileList(Shelf* shelf) : shelf_(shelf) {}
-  Shelf* shelf() const noexcept { return shelf_; }
-  bool opening() const noexcept { return shelf_ != nullptr && shelf_->busy(); }
-  /// As Workplace says; kUsage without a shelf.
+  /// `loader` outlives it; null: the session shows one surface, and no other.
+  explicit FileList(FileLoader* loader) : loader_(loader) {}
+  FileLoader* loader() const noexcept { return loader_; }
+  bool opening() const noexcept { return loader_ != nullptr && loader_->busy(); }
+  /// As Workplace says; kUsage without a loader.
   Result<void> open(const std::vector<std::filesystem::path>& files);
   Result<void> open_recent(std::size_t number);
   Result<void> step(int by);
@@ -29,7 +29,7 @@ class FileList {
   std::string title(const std::string& shown) const;
 
  private:
-  Shelf* shelf_;
+  FileLoader* loader_;
   FolderListing listing_;
   std::vector<RecentFile> recent_;
   TimestampNs listed_ = -1;

@@ -79,7 +79,7 @@ class Figures {
 class Loop {
  public:
   Loop(const ViewOptions& options, Progress& progress) : options_(options), progress_(progress) {}
-  Result<ViewResult> run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf,
+  Result<ViewResult> run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, FileLoader* loader,
                          KeptPanels* kept);
 
  private:
@@ -198,8 +198,8 @@ bool Loop::ends(TimestampNs start) {
   return now - start >= static_cast<TimestampNs>(1e9 * options_.time.longest_s);
 }
 
-Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf,
-                             KeptPanels* kept) {
+Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look,
+                             FileLoader* loader, KeptPanels* kept) {
   DUBSAR_TRY(check(options_));
   return_large_blocks();  // textures, each time the window changes
   std::string note;
@@ -219,7 +219,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     if (also_) also_->drop_surface();
   };
   DUBSAR_ASSIGN(viewer_,
-                Viewer::create(mesh, options_, {*presenter_, clock(), shelf, surface_goes}, std::move(sink), note));
+                Viewer::create(mesh, options_, {*presenter_, clock(), loader, surface_goes}, std::move(sink), note));
   if (also_)
     also_->begin(options_);
   else
@@ -290,9 +290,9 @@ KeptPanels::KeptPanels() = default;
 KeptPanels::~KeptPanels() = default;
 
 Result<ViewResult> run_view(const TriMesh& mesh, const ViewOptions& options, Progress& progress,
-                            const std::function<void(const ViewMoment&)>& look, Shelf* shelf, KeptPanels* kept) {
+                            const std::function<void(const ViewMoment&)>& look, FileLoader* loader, KeptPanels* kept) {
   Loop loop(options, progress);
-  return loop.run(mesh, look, shelf, kept);
+  return loop.run(mesh, look, loader, kept);
 }
 
 }  // namespace dubsar::app

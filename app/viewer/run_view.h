@@ -31,11 +31,11 @@ struct KeptPanels {
 /// eye, and nothing is drawn while nothing changes. A recording is complete whatever ends the session. Errors: those of
 /// the presenter, the stage and the sources; kCancelled; a picture that cannot be drawn three times in a row. Main
 /// thread.
-/// With a shelf `mesh` may be without triangles: the shelf's files are shown, the first of `files` first, once they are
-/// read; without files the open dialogue is. `kept` has the windows of a session before with the same display and
+/// With a loader `mesh` may be without triangles: the loader's files are shown, the first of `files` first, once they
+/// are read; without files the open dialogue is. `kept` has the windows of a session before with the same display and
 /// panels, or nothing, and gets those of this one.
 Result<ViewResult> run_view(const TriMesh& mesh, const ViewOptions& options, Progress& progress,
-                            const std::function<void(const ViewMoment&)>& look = {}, Shelf* shelf = nullptr,
+                            const std::function<void(const ViewMoment&)>& look = {}, FileLoader* loader = nullptr,
                             KeptPanels* kept = nullptr);
 
 }  // namespace dubsar::app

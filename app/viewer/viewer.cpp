@@ -27,7 +27,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const TriMesh& mesh, const ViewOp
 Viewer::Viewer(const TriMesh& mesh, const ViewOptions& options, Given given)
     : options_(options),
       given_(std::move(given)),
-      files_{FileList(given_.shelf), KeptWork([this](std::string words) { say(std::move(words)); })},
+      files_{FileList(given_.loader), KeptWork([this](std::string words) { say(std::move(words)); })},
       steps_(options_.steps) {
   scene_.mesh = &mesh;
   scene_.options = &options_.stage;
@@ -52,7 +52,7 @@ void Viewer::run(std::string_view text, std::uint64_t merge) {
 
 /// And there is none.
 bool Viewer::needs_surface(const Command& command) const {
-  return !has_surface() && given_.shelf != nullptr && command.group != kWindowGroup && command.group != kFileGroup;
+  return !has_surface() && given_.loader != nullptr && command.group != kWindowGroup && command.group != kFileGroup;
 }
 
 Result<void> Viewer::obey(std::string_view command, std::uint64_t merge) {
@@ -127,7 +127,7 @@ void Viewer::set_trouble(const std::string& words) {
 
 void Viewer::presented(TimestampNs now) {
   files_.window_shown = true;
-  if (files_.coarse) given_.shelf->coarse_was_shown();
+  if (files_.coarse) given_.loader->coarse_was_shown();
   if (options_.guide != nullptr) options_.guide->presented(now);
 }
 

@@ -37,10 +37,10 @@ class Viewer final {
   struct Given {
     Presenter& presenter;  ///< events of its window come to the session
     const Clock& clock;
-    Shelf* shelf = nullptr;                ///< surfaces that are read; null: there is no other than the first
+    FileLoader* loader = nullptr;          ///< surfaces that are read; null: there is no other than the first
     std::function<void()> surface_goes{};  ///< called before the present surface goes
   };
-  /// Starts the sources, too. `mesh` outlives it; without triangles: the surface comes from the shelf. Errors of
+  /// Starts the sources, too. `mesh` outlives it; without triangles: the surface comes from the loader. Errors of
   /// Stage::create, SourceSet::start, the recording, and of the mapping's keys.
   static Result<std::unique_ptr<Viewer>> create(const TriMesh& mesh, const ViewOptions& options, Given given,
                                                 std::unique_ptr<OutputSink> sink, const std::string& note);

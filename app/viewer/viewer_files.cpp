@@ -23,7 +23,7 @@ ViewState carried_over(const ViewState& home, const ViewState& seen, const ViewS
 
 /// Shows the file that was read meanwhile, or says why it cannot be; nothing where none was.
 std::optional<Result<void>> Viewer::put_read() {
-  auto read = given_.shelf->take();
+  auto read = given_.loader->take();
   if (!read) return std::nullopt;
   if (!*read) return tl::unexpected<Error>(read->error());
   return put(*std::move(*read));
@@ -31,37 +31,37 @@ std::optional<Result<void>> Viewer::put_read() {
 
 /// What fell on the window; who leads a session says what is shown.
 void Viewer::drop(const std::vector<std::string>& files) {
-  if (given_.shelf == nullptr || options_.guide != nullptr || files.empty()) return;
+  if (given_.loader == nullptr || options_.guide != nullptr || files.empty()) return;
   if (const auto done = files_.list.open({files.begin(), files.end()}); !done) return say(done.error().message);
   editor_->desk().choosing.open = false;
 }
 
 /// Until the first file is there, what is known of it stands in its place.
 void Viewer::take_coarse() {
-  auto coarse = given_.shelf->take_coarse();
+  auto coarse = given_.loader->take_coarse();
   if (!coarse) return;
-  if (has_surface()) return given_.shelf->coarse_was_shown();  // it is not wanted
+  if (has_surface()) return given_.loader->coarse_was_shown();  // it is not wanted
   auto mesh = std::make_unique<TriMesh>(*std::move(coarse));
   if (const auto done = stage_->set_mesh(*mesh); !done) {
     log_warning("{}", done.error().message);
-    return given_.shelf->coarse_was_shown();
+    return given_.loader->coarse_was_shown();
   }
   files_.coarse = std::move(mesh);
 }
 
 /// Takes in a file that was read meanwhile.
 void Viewer::take_surface() {
-  if (given_.shelf == nullptr || !files_.window_shown) return;
-  given_.shelf->start();
+  if (given_.loader == nullptr || !files_.window_shown) return;
+  given_.loader->start();
   take_coarse();
   const std::optional<Result<void>> done = put_read();
   if (!done || *done) return;
   const Error& why = done->error();
-  if (!has_surface() && given_.shelf->files().empty() && files_.first)
+  if (!has_surface() && given_.loader->files().empty() && files_.first)
     return steps_.fail_with(why);  // what the session was begun for
   log_warning("{}", why.message);
   say(why.message);
-  if (!has_surface() && !given_.shelf->go_on()) editor_->desk().choosing.open = true;
+  if (!has_surface() && !given_.loader->go_on()) editor_->desk().choosing.open = true;
 }
 
 std::string Viewer::title() const { return files_.list.title(has_surface() ? options_.around.title : std::string()); }
@@ -69,7 +69,7 @@ std::string Viewer::title() const { return files_.list.title(has_surface() ? opt
 /// The window is called by the file that is shown, and the one that is being read.
 void Viewer::name_window() {
   GlfwWindow* const window = given_.presenter.window();
-  if (window == nullptr || given_.shelf == nullptr) return;
+  if (window == nullptr || given_.loader == nullptr) return;
   std::string name = title().empty() ? "dubsar" : "dubsar: " + title();
   if (name == files_.window_name) return;
   window->set_title(name);

@@ -91,7 +91,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   DUBSAR_TRY(make_vocabulary());
   FirstDocument first = first_document(options_, mesh());
   options_.work.doubt = std::move(first.doubt);
-  if (given_.shelf != nullptr) options_.stage.subject = Subject::kLater;
+  if (given_.loader != nullptr) options_.stage.subject = Subject::kLater;
   DUBSAR_ASSIGN(stage_, Stage::create(mesh(), options_.stage, std::move(sink)));
   scene_.stage = stage_.get();
   DUBSAR_ASSIGN(auto font, LabelFont::create(panel_font()));
@@ -108,7 +108,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
                          *input_.sources, files_.list, tools_->slices, known_.film,
                          [this]() -> Result<void> {  // simulated time stands still while a file is read
                            if (options_.time.fps == 0) return {};
-                           given_.shelf->wait();
+                           given_.loader->wait();
                            return put_read().value_or(Result<void>());
                          },
                          [this] {  // it may have been a touch panel, or the mouse with a button down
@@ -126,7 +126,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   Desk& desk = editor_->desk();
   desk.panels = displays_->panels_wanted();
   desk.ui_scale = options_.around.scale;
-  desk.choosing.open = given_.shelf != nullptr && !has_surface() && !files_.first;
+  desk.choosing.open = given_.loader != nullptr && !has_surface() && !files_.first;
   input_.steering->set_home(home_of(document()));
   DUBSAR_TRY(start_sources());
   if (GlfwWindow* const window = given_.presenter.window()) {

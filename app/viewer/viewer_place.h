@@ -42,7 +42,7 @@ class ViewerPlace final : public Workplace {
   Result<void> open_file(const std::string& path) override;
   Result<void> open_recent(std::size_t number) override;
   Result<void> switch_file(int step) override;
-  bool stop_opening() override { return to_.files.shelf() != nullptr && to_.files.shelf()->stop(); }
+  bool stop_opening() override { return to_.files.loader() != nullptr && to_.files.loader()->stop(); }
   std::string present_folder() const override { return to_.files.present_folder(); }
   void say(std::string words) override { to_.scene.ask.say(std::move(words)); }
   void end() override;

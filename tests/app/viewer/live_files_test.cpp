@@ -66,10 +66,10 @@ class LiveFiles : public Live {
   }
   /// As play(), of a session that begins with these files. Steps see every turn, drawn or not.
   Result<ViewResult> open_and(const std::vector<fs::path>& files, const std::vector<Step>& steps) {
-    Shelf shelf(
+    FileLoader loader(
         [this](const fs::path& path, Progress& progress, const TellCoarse& tell) { return read(path, progress, tell); },
         folder_ / "state" / "recent.json");
-    EXPECT_TRUE(shelf.open(files));
+    EXPECT_TRUE(loader.open(files));
     SilentProgress silent;
     std::size_t at = 0;
     bool acted = false;
@@ -83,10 +83,10 @@ class LiveFiles : public Live {
           ++at;
           acted = false;
         },
-        &shelf);
+        &loader);
     EXPECT_EQ(at, steps.size()) << "the step that never came true";
     expect_ended(out);
-    shown_ = shelf.files();
+    shown_ = loader.files();
     return out;
   }
   static Step until(std::function<bool(const ViewMoment&)> done) { return {{}, std::move(done)}; }

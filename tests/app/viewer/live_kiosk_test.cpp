@@ -174,7 +174,7 @@ TEST_F(LiveKiosk, SomethingCoarseIsShownAndLedWhileTheFileIsRead) {
   const std::filesystem::path file = key_file_.string() + ".ply";
   std::ofstream(file) << "some surface\n";
   std::atomic<bool> may_come = false;
-  Shelf shelf(
+  FileLoader loader(
       [&](const std::filesystem::path& path, Progress&, const TellCoarse& tell) -> Result<OpenedSurface> {
         tell(testing::sphere(20.0f, 12, 24));
         while (!may_come) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -184,7 +184,7 @@ TEST_F(LiveKiosk, SomethingCoarseIsShownAndLedWhileTheFileIsRead) {
         return out;
       },
       {});
-  ASSERT_TRUE(shelf.open({file}));
+  ASSERT_TRUE(loader.open({file}));
   const std::size_t all = testing::lettered_box().triangles.size();
   int coarse = 0, whole = 0;
   SilentProgress progress;
@@ -198,7 +198,7 @@ TEST_F(LiveKiosk, SomethingCoarseIsShownAndLedWhileTheFileIsRead) {
         }
         if (moment.viewer.mesh().triangles.size() == all && ++whole % 5 == 1) person_->key("9");
       },
-      &shelf);
+      &loader);
   ASSERT_TRUE(out) << out.error().message;
   EXPECT_GT(coarse, 5);
   EXPECT_GT(whole, 0);
@@ -211,7 +211,7 @@ TEST_F(LiveKiosk, WhatAVisitorTurnedWhileTheSurfaceWasCoarseStaysTurned) {
   const std::filesystem::path file = key_file_.string() + ".ply";
   std::ofstream(file) << "some surface\n";
   std::atomic<bool> may_come = false;
-  Shelf shelf(
+  FileLoader loader(
       [&](const std::filesystem::path&, Progress&, const TellCoarse& tell) -> Result<OpenedSurface> {
         tell(testing::sphere(20.0f, 12, 24));
         while (!may_come) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -220,7 +220,7 @@ TEST_F(LiveKiosk, WhatAVisitorTurnedWhileTheSurfaceWasCoarseStaysTurned) {
         return out;
       },
       {});
-  ASSERT_TRUE(shelf.open({file}));
+  ASSERT_TRUE(loader.open({file}));
   int coarse = 0;
   TimestampNs came = -1;
   double before_deg = 0.0, after_deg = 0.0, pan = 0.0;
@@ -251,7 +251,7 @@ TEST_F(LiveKiosk, WhatAVisitorTurnedWhileTheSurfaceWasCoarseStaysTurned) {
         if (!std::filesystem::exists(key_file_)) std::ofstream(key_file_) << "here\n";
         person_->key("9");
       },
-      &shelf);
+      &loader);
   ASSERT_TRUE(out) << out.error().message;
   EXPECT_GT(before_deg, 5.0) << "else nothing was turned";
   EXPECT_NEAR(after_deg, before_deg, 1.0);

@@ -149,12 +149,12 @@ TEST_F(Live, AScriptSaysEveryCommandThereIs) {
     out.work.surface = path;
     return out;
   };
-  Shelf shelf(read, folder / "recent.json");
-  ASSERT_TRUE(shelf.open({folder / "a.ply"}));
+  FileLoader loader(read, folder / "recent.json");
+  ASSERT_TRUE(loader.open({folder / "a.ply"}));
   SilentProgress silent;
-  const auto done = run_view(TriMesh(), options_, silent, {}, &shelf);
+  const auto done = run_view(TriMesh(), options_, silent, {}, &loader);
   ASSERT_TRUE(done) << done.error().message;
-  EXPECT_EQ(shelf.files().size(), 2u);
+  EXPECT_EQ(loader.files().size(), 2u);
   EXPECT_LT(done->seconds, 40.0) << "its last command ends the session";
   EXPECT_EQ(done->document.measures.size(), 4u);
   EXPECT_EQ(done->document.notes.size(), 2u);

@@ -13,10 +13,10 @@
 namespace dubsar::app {
 
 /// One thread: that of the GL context. Nothing here waits for a file but wait() and whole().
-class SliceDesk {
+class SlicePictures {
  public:
   /// `mesh` outlives it; `box_mm` is that of the mesh. Nothing is opened before the first update().
-  SliceDesk(const TriMesh& mesh, const Box& box_mm, std::optional<ScanLink> link);
+  SlicePictures(const TriMesh& mesh, const Box& box_mm, std::optional<ScanLink> link);
 
   /// Asks for what `view` shows at these places of a layout whose pixels are `px` each way, and takes in what there is.
   void update(const ScanView& view, const std::array<PanelRect, kSlices>& rects, const glm::dvec2& px);

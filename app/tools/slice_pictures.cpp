@@ -1,4 +1,4 @@
-#include "app/tools/slice_desk.h"
+#include "app/tools/slice_pictures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,13 +47,13 @@ void draw_line(Image& image, const glm::dvec2& a, const glm::dvec2& b, const Rgb
 
 }  // namespace
 
-SliceDesk::SliceDesk(const TriMesh& mesh, const Box& box_mm, std::optional<ScanLink> link)
+SlicePictures::SlicePictures(const TriMesh& mesh, const Box& box_mm, std::optional<ScanLink> link)
     : mesh_(mesh), link_(std::move(link)) {
   const glm::dvec3 size = box_mm.size();
   whole_mm_ = kRoom * std::max({size.x, size.y, size.z, 1e-6});
 }
 
-void SliceDesk::update(const ScanView& view, const std::array<PanelRect, kSlices>& rects, const glm::dvec2& px) {
+void SlicePictures::update(const ScanView& view, const std::array<PanelRect, kSlices>& rects, const glm::dvec2& px) {
   if (!reader_) {
     SliceReader::OpenScan open;
     if (link_) open = [link = *link_] { return open_scan(link); };
@@ -96,12 +96,12 @@ void SliceDesk::update(const ScanView& view, const std::array<PanelRect, kSlices
   }
 }
 
-void SliceDesk::wait() {
+void SlicePictures::wait() {
   if (reader_) reader_->wait();
 }
 
 /// As the view says; else as the first exact pictures have them, and until there are any, as the coarse ones do.
-void SliceDesk::find_greys(const ScanView& view) {
+void SlicePictures::find_greys(const ScanView& view) {
   if (!greys_exact_) {
     std::vector<float> values;
     bool exact = false;
@@ -123,7 +123,7 @@ void SliceDesk::find_greys(const ScanView& view) {
   state_.white = greys[1];
 }
 
-void SliceDesk::shade(SlicePane& pane, GlTexture& texture) const {
+void SlicePictures::shade(SlicePane& pane, GlTexture& texture) const {
   pane.texture = 0;
   ++pane.shade;
   if (!pane.picture || pane.picture->image.values.empty()) return;
@@ -143,7 +143,7 @@ void SliceDesk::shade(SlicePane& pane, GlTexture& texture) const {
   pane.texture = texture;
 }
 
-std::vector<LinesItem> SliceDesk::lines(const ScanView& view, const PartLooks& parts) const {
+std::vector<LinesItem> SlicePictures::lines(const ScanView& view, const PartLooks& parts) const {
   std::vector<LinesItem> out;
   const std::size_t which = view.large > 0 ? static_cast<std::size_t>(view.large - 1) : 3;
   if (const SharedSlice& picture = state_.panes[which].picture) {
@@ -173,7 +173,7 @@ std::vector<LinesItem> SliceDesk::lines(const ScanView& view, const PartLooks& p
   return out;
 }
 
-Result<Image> SliceDesk::whole(const ScanView& view, std::size_t which) {
+Result<Image> SlicePictures::whole(const ScanView& view, std::size_t which) {
   OpenedScan scan;
   scan.voxel_mm = glm::dvec3(whole_mm_ / kOutlineSide);
   if (link_) {

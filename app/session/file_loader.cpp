@@ -1,4 +1,4 @@
-#include "app/session/shelf.h"
+#include "app/session/file_loader.h"
 
 #include <algorithm>
 #include <chrono>
@@ -38,7 +38,7 @@ Result<void> check_file(const fs::path& file) {
 }  // namespace
 
 /// One file that is read in a thread.
-class Shelf::Reading final : public Progress {
+class FileLoader::Reading final : public Progress {
  public:
   Reading(fs::path file, std::size_t index)
       : index_(index), file_(std::move(file)), whole_(lower_suffix(file_) == ".ply" ? ply_plan() : reading_plan()) {}
@@ -126,18 +126,18 @@ class Shelf::Reading final : public Progress {
   std::jthread thread_;  // goes first
 };
 
-Shelf::Shelf(ReadSurface read, fs::path recent) : read_(std::move(read)), recent_(std::move(recent)) {}
+FileLoader::FileLoader(ReadSurface read, fs::path recent) : read_(std::move(read)), recent_(std::move(recent)) {}
 
-Shelf::~Shelf() {
+FileLoader::~FileLoader() {
   for (const auto& each : left_) each->leave();
 }
 
-void Shelf::begin(std::size_t file) {
+void FileLoader::begin(std::size_t file) {
   stop();
   reading_ = std::make_unique<Reading>(files_[file], file);
 }
 
-Result<void> Shelf::open(const std::vector<fs::path>& files) {
+Result<void> FileLoader::open(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) DUBSAR_TRY(check_file(file));
   std::optional<std::size_t> first;
   for (const fs::path& file : files) {
@@ -151,13 +151,13 @@ Result<void> Shelf::open(const std::vector<fs::path>& files) {
   return {};
 }
 
-void Shelf::has(const std::vector<fs::path>& files) {
+void FileLoader::has(const std::vector<fs::path>& files) {
   std::error_code error;
   for (const fs::path& file : files) files_.push_back(fs::absolute(file, error).lexically_normal());
   shown_ = 0;
 }
 
-Result<void> Shelf::step(int by) {
+Result<void> FileLoader::step(int by) {
   const std::size_t count = files_.size();
   if (count < 2) return fail(ErrorKind::kUsage, "one file is open, there is no other to go to");
   const std::size_t from = reading_ ? reading_->index() : shown_.value_or(0);
@@ -165,13 +165,13 @@ Result<void> Shelf::step(int by) {
   return {};
 }
 
-bool Shelf::go_on() {
+bool FileLoader::go_on() {
   if (shown_ || reading_ || files_.empty()) return false;
   begin(0);
   return true;
 }
 
-bool Shelf::stop() {
+bool FileLoader::stop() {
   std::erase_if(left_, [](const auto& each) { return each->done(); });
   if (!reading_) return false;
   reading_->leave();
@@ -180,7 +180,7 @@ bool Shelf::stop() {
   return true;
 }
 
-std::optional<Result<OpenedSurface>> Shelf::take() {
+std::optional<Result<OpenedSurface>> FileLoader::take() {
   if (!reading_ || !reading_->done()) return std::nullopt;
   const std::unique_ptr<Reading> read = std::move(reading_);
   Result<OpenedSurface> out = read->take();
@@ -194,23 +194,25 @@ std::optional<Result<OpenedSurface>> Shelf::take() {
   return out;
 }
 
-std::optional<TriMesh> Shelf::take_coarse() { return reading_ ? reading_->take_coarse() : std::nullopt; }
+std::optional<TriMesh> FileLoader::take_coarse() { return reading_ ? reading_->take_coarse() : std::nullopt; }
 
-void Shelf::coarse_was_shown() {
+void FileLoader::coarse_was_shown() {
   if (reading_) reading_->go_on();
 }
 
-void Shelf::start() {
+void FileLoader::start() {
   if (reading_) reading_->start(read_);
 }
 
-void Shelf::wait() {
+void FileLoader::wait() {
   if (!reading_) return;
   reading_->go_on();  // nobody looks meanwhile
   start();
   reading_->wait();
 }
 
-std::optional<Opening> Shelf::opening() const { return reading_ ? std::optional(reading_->state()) : std::nullopt; }
+std::optional<Opening> FileLoader::opening() const {
+  return reading_ ? std::optional(reading_->state()) : std::nullopt;
+}
 
 }  // namespace dubsar::app

@@ -32,13 +32,13 @@ using TellCoarse = std::function<void(TriMesh)>;
 using ReadSurface = std::function<Result<OpenedSurface>(const std::filesystem::path&, Progress&, const TellCoarse&)>;
 
 /// One thread: that of the session.
-class Shelf {
+class FileLoader {
  public:
   /// `recent` is the list of recent files (app/document/recent_files.h); empty: none is kept.
-  Shelf(ReadSurface read, std::filesystem::path recent);
-  ~Shelf();  ///< stops what is being read, and waits for it: two seconds at most
-  Shelf(const Shelf&) = delete;
-  Shelf& operator=(const Shelf&) = delete;
+  FileLoader(ReadSurface read, std::filesystem::path recent);
+  ~FileLoader();  ///< stops what is being read, and waits for it: two seconds at most
+  FileLoader(const FileLoader&) = delete;
+  FileLoader& operator=(const FileLoader&) = delete;
 
   /// Puts these files beside those that are open, and the first is the next to be read. What was being read before is
   /// left. kNoInput: one of them is not there; kUsage: a folder, or no surface by its name.

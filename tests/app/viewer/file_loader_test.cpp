@@ -1,6 +1,6 @@
 // The files of a session without a window: what is read when.
 
-#include "app/session/shelf.h"
+#include "app/session/file_loader.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
-class ShelfTest : public testing_tools::TempFolder {
+class FileLoaderTest : public testing_tools::TempFolder {
  protected:
-  ShelfTest() { write_bytes(file_, "a"); }
+  FileLoaderTest() { write_bytes(file_, "a"); }
   /// Tells something coarse, then reads the rest.
-  Shelf shelf() {
-    return Shelf(
+  FileLoader loader() {
+    return FileLoader(
         [this](const fs::path&, Progress& progress, const TellCoarse& tell) -> Result<OpenedSurface> {
           TriMesh coarse;
           coarse.triangles.resize(1);
@@ -32,9 +32,9 @@ class ShelfTest : public testing_tools::TempFolder {
         },
         {});
   }
-  static std::optional<TriMesh> coarse_of(Shelf& shelf) {
+  static std::optional<TriMesh> coarse_of(FileLoader& loader) {
     for (int i = 0; i < 1000; ++i) {
-      if (auto coarse = shelf.take_coarse()) return coarse;
+      if (auto coarse = loader.take_coarse()) return coarse;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     return std::nullopt;
@@ -44,39 +44,39 @@ class ShelfTest : public testing_tools::TempFolder {
   std::atomic<bool> rest_ = false;
 };
 
-TEST_F(ShelfTest, TheRestIsReadWhenTheCoarseSurfaceWasShown) {
-  Shelf shelf = this->shelf();
-  ASSERT_TRUE(shelf.open({file_}));
-  shelf.start();
-  const auto coarse = coarse_of(shelf);
+TEST_F(FileLoaderTest, TheRestIsReadWhenTheCoarseSurfaceWasShown) {
+  FileLoader loader = this->loader();
+  ASSERT_TRUE(loader.open({file_}));
+  loader.start();
+  const auto coarse = coarse_of(loader);
   ASSERT_TRUE(coarse);
   EXPECT_EQ(coarse->triangles.size(), 1u);
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_FALSE(rest_) << "it takes the processor from the first picture";
-  shelf.coarse_was_shown();
-  shelf.wait();
-  const auto read = shelf.take();
+  loader.coarse_was_shown();
+  loader.wait();
+  const auto read = loader.take();
   ASSERT_TRUE(read && *read);
   EXPECT_EQ((*read)->mesh.triangles.size(), 2u);
 }
 
-TEST_F(ShelfTest, WhereNobodyLooksNothingWaits) {
+TEST_F(FileLoaderTest, WhereNobodyLooksNothingWaits) {
   const auto begun = std::chrono::steady_clock::now();
-  Shelf shelf = this->shelf();
-  ASSERT_TRUE(shelf.open({file_}));
-  shelf.wait();
-  ASSERT_TRUE(shelf.take());
+  FileLoader loader = this->loader();
+  ASSERT_TRUE(loader.open({file_}));
+  loader.wait();
+  ASSERT_TRUE(loader.take());
   EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(2));
 }
 
-TEST_F(ShelfTest, ReadingIsStoppedWhileItWaitsToBeSeen) {
+TEST_F(FileLoaderTest, ReadingIsStoppedWhileItWaitsToBeSeen) {
   const auto begun = std::chrono::steady_clock::now();
   {
-    Shelf shelf = this->shelf();
-    ASSERT_TRUE(shelf.open({file_}));
-    shelf.start();
-    ASSERT_TRUE(coarse_of(shelf));
-    EXPECT_TRUE(shelf.stop());
+    FileLoader loader = this->loader();
+    ASSERT_TRUE(loader.open({file_}));
+    loader.start();
+    ASSERT_TRUE(coarse_of(loader));
+    EXPECT_TRUE(loader.stop());
   }
   EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(2));
   EXPECT_FALSE(rest_);
