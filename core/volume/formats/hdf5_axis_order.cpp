@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/text/json_text.h"
+#include "core/volume/formats/hdf5_imaris.h"
 #include "core/volume/formats/hdf5_path.h"
 #include "core/volume/formats/hdf5_scales.h"
 
@@ -44,6 +45,7 @@ class Reader {
     by_emd(file, path);
     by_vtk(file, path);
     if (&file == volume_.file.get()) by_scales(file);
+    if (auto order = imaris_axis_order(volume_); order && &file == volume_.file.get()) offer(*std::move(order));
     for (std::string at = path; at != "/";) {
       at = hdf5_parent(at);
       by_order_names(file, at);

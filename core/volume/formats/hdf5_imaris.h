@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "core/volume/axis_order.h"
 #include "core/volume/formats/hdf5_search.h"
 
 namespace dubsar {
@@ -16,5 +17,8 @@ std::optional<Dims> imaris_dims(const Hdf5Volume& volume, const Dims& stored);
 
 /// ExtMin and ExtMax of DataSetInfo/Image over its size, by their unit (micrometres where none is said).
 std::optional<VoxelSize> imaris_voxel_size(const Hdf5Volume& volume);
+
+/// Which axes an Imaris volume has stored from their far end: ExtMin above ExtMax. nullopt: no Imaris volume, or none.
+std::optional<AxisOrder> imaris_axis_order(const Hdf5Volume& volume);
 
 }  // namespace dubsar

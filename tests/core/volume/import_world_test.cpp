@@ -181,7 +181,7 @@ TEST_F(ImportWorld, DimensionScalesGiveVoxelSizeAndOrder) {
 }
 
 TEST_F(ImportWorld, ImarisVolumesAreWithoutTheirPadding) {
-  const auto make = [&](const std::string& name, int channels, const std::string& size_x) {
+  const auto make = [&](const std::string& name, int channels, const std::string& size_x, int backwards = -1) {
     Hdf5Fixture file(in(name));
     const std::string point = "/DataSet/ResolutionLevel 0/TimePoint 0";
     for (const char* group : {"/DataSet", "/DataSet/ResolutionLevel 0", "/DataSetInfo", "/DataSetInfo/Image"})
@@ -198,8 +198,8 @@ TEST_F(ImportWorld, ImarisVolumesAreWithoutTheirPadding) {
     }
     for (int axis = 0; axis < 3; ++axis) {
       file.characters("/DataSetInfo/Image", std::string(1, "XYZ"[axis]), axis == 0 ? size_x : "3");
-      file.characters("/DataSetInfo/Image", "ExtMin" + std::to_string(axis), "-10");
-      file.characters("/DataSetInfo/Image", "ExtMax" + std::to_string(axis), "20.5");
+      file.characters("/DataSetInfo/Image", "ExtMin" + std::to_string(axis), axis == backwards ? "20.5" : "-10");
+      file.characters("/DataSetInfo/Image", "ExtMax" + std::to_string(axis), axis == backwards ? "-10" : "20.5");
     }
     file.characters("/DataSetInfo/Image", "Unit", "um");
   };
@@ -215,6 +215,16 @@ TEST_F(ImportWorld, ImarisVolumesAreWithoutTheirPadding) {
     for (int y = 0; y < 3; ++y)
       for (int x = 0; x < 5; ++x)
         EXPECT_EQ(values[static_cast<std::size_t>((z * 3 + y) * 5 + x)], static_cast<float>((z * 4 + y) * 8 + x));
+  EXPECT_FALSE(opened->info.axes.known());
+  for (int axis = 0; axis < 3; ++axis) {  // stored from its far end, or the surface would be a mirror image
+    const std::string name = "flipped" + std::to_string(axis) + ".ims";
+    make(name, 1, "5", axis);
+    opened = open(name);
+    ASSERT_TRUE(opened) << opened.error().message;
+    EXPECT_EQ(opened->info.axes.letters(), (std::array{"zy-x", "z-yx", "-zyx"})[static_cast<std::size_t>(axis)]);
+    EXPECT_EQ(opened->info.file_dims, (Dims{5, 3, 3}));
+    EXPECT_NEAR(opened->info.voxel.mm.x, 30.5e-3 / 5, 1e-9);
+  }
   make("wrong.ims", 1, "9");
   opened = open("wrong.ims");
   ASSERT_TRUE(opened) << opened.error().message;
