@@ -103,6 +103,8 @@ def main():
     scan, out = os.path.join(options.folder, "scan.h5"), os.path.join(options.folder, "scan.exa")
     rows, ups = {}, {}
     for seed in range(options.first_seed, options.first_seed + options.seeds):
+        if os.path.exists(scan):  # one that was written here from a phantom's, which phantom does not replace
+            os.remove(scan)
         subprocess.run([options.program, "phantom", scan, "--size", options.size, "--seed", str(seed), "--quiet", *phantom], check=True,
                        stdout=subprocess.DEVNULL)
         with h5py.File(scan) as file:
