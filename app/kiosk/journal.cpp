@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <ctime>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/base/text/json_text.h"
@@ -35,6 +36,14 @@ std::string Journal::words(std::string_view name, std::string_view words) {
 std::filesystem::path Journal::file(std::int64_t unix_s) const {
   const std::tm t = local_time(unix_s);
   return folder_ / fmt::format("kiosk-{:04}-{:02}-{:02}.jsonl", t.tm_year + 1900, t.tm_mon + 1, t.tm_mday);
+}
+
+std::int64_t Journal::visits(std::int64_t unix_s) const {
+  if (folder_.empty()) return 0;
+  std::ifstream in(file(unix_s));
+  std::int64_t out = 0;
+  for (std::string line; std::getline(in, line);) out += line.find("\"what\": \"visit\"") != std::string::npos;
+  return out;
 }
 
 Result<void> Journal::add(std::int64_t unix_s, std::string_view what, std::string_view figures) {

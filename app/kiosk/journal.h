@@ -23,6 +23,9 @@ class Journal {
   /// One of the figures, with a text of any letters: "\"NAME\": \"WORDS\"".
   static std::string words(std::string_view name, std::string_view words);
 
+  /// Visits of a day that were written down already; 0 where its file cannot be read.
+  std::int64_t visits(std::int64_t unix_s) const;
+
   /// The file of a day, by the local calendar.
   std::filesystem::path file(std::int64_t unix_s) const;
 

@@ -1,9 +1,7 @@
 #include "app/kiosk/kiosk_guide.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 
 #include "app/document/document.h"
@@ -17,14 +15,8 @@ namespace {
 constexpr double kSwayDeg = 12.0, kSwayPeriodS = 22.0;  // at most 4 degrees a second
 constexpr double kSwayRiseS = 4.0, kSwayFallS = 2.0, kUnpackS = 2.0, kDarkS = 3.0;
 constexpr double kAsleepDark = 0.97;
+constexpr double kBrightnessStep = 0.1;
 constexpr double kHandTurnDeg = 0.05;  // less is noise
-
-WallTime this_machine() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  return {static_cast<std::int64_t>(now), 60 * local.tm_hour + local.tm_min};
-}
 
 /// A step towards a goal at an even pace.
 double towards(double from, double to, double step) {
@@ -44,10 +36,10 @@ KioskGuide::KioskGuide(KioskParts parts)
     : parts_(std::move(parts)),
       visit_({parts_.profile.idle_reset_s, parts_.profile.attract_after_s}),
       menu_(parts_.profile.pin),
-      journal_(parts_.profile.journal),
+      diary_(parts_.profile.journal, parts_.wall),
       notify_(parts_.notify_socket, parts_.watchdog_us) {
-  if (!parts_.wall) parts_.wall = this_machine;
-  write("start");
+  diary_.look_at_day(0);
+  diary_.write("start", parts_.version.empty() ? std::string() : Journal::words("version", parts_.version));
   set_trouble(std::exchange(parts_.trouble, {}), parts_.flat);
 }
 
@@ -57,29 +49,12 @@ void KioskGuide::set_trouble(std::string trouble, bool flat) {
   parts_.trouble = std::move(trouble);
   if (parts_.trouble.empty()) return;
   log_warning("{}", parts_.trouble);
-  write("trouble", Journal::words("says", parts_.trouble));
-}
-
-/// Of those that the profile names; what is new is written down, not that the same one is away again.
-void KioskGuide::look_at_devices(std::span<const SourceRow> sources) {
-  std::string missing;
-  for (const SourceRow& row : sources)
-    if (row.health == SourceHealth::kMissing || row.health == SourceHealth::kLost)
-      missing += fmt::format("{}{}: {}", missing.empty() ? "" : "; ", row.spec, row.reason);
-  if (missing.empty() || missing == told_.missing) return;
-  told_.missing = std::move(missing);
-  write("trouble", Journal::words("says", told_.missing));
+  diary_.trouble(parts_.trouble);
 }
 
 KioskGuide::~KioskGuide() {
-  write("end", fmt::format("\"visits\": {}, \"resets\": {}", visit_.counts().visits, visit_.counts().resets));
+  diary_.write("end", fmt::format("\"visits\": {}, \"resets\": {}", visit_.counts().visits, visit_.counts().resets));
   notify_.stopping();
-}
-
-void KioskGuide::write(std::string_view what, std::string_view figures) {
-  const auto done = journal_.add(parts_.wall().unix_s, what, figures);
-  if (!done && done.error().message != told_.trouble) log_warning("{}", done.error().message);
-  told_.trouble = done ? std::string() : done.error().message;
 }
 
 void KioskGuide::begin_object() {
@@ -90,7 +65,7 @@ void KioskGuide::begin_object() {
 }
 
 void KioskGuide::leave_out(std::size_t object, std::string_view why) {
-  write("trouble", Journal::words("says", why));
+  diary_.trouble(why);
   std::vector<KioskObject>& objects = parts_.profile.objects;
   objects.erase(objects.begin() + static_cast<std::ptrdiff_t>(object));
   if (object < parts_.tours.size()) parts_.tours.erase(parts_.tours.begin() + static_cast<std::ptrdiff_t>(object));
@@ -115,7 +90,7 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
   VisitMoment out;
   out.tracker = std::any_of(moment.sources.begin(), moment.sources.end(), sees_hands);
   out.touch = std::any_of(moment.sources.begin(), moment.sources.end(), is_touched);
-  out.asleep = is_quiet(parts_.profile.quiet, parts_.wall().minute_of_day);
+  out.asleep = is_quiet(parts_.profile.quiet, diary_.wall().minute_of_day);
   out.head = steered.eyes.presence == Presence::kTracked;
   out.hands = static_cast<int>(steered.hands.size());
   if (!steered.hands.empty()) {
@@ -128,6 +103,12 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
     const double turned = turn_between_deg(view_->rotation, steered.view.rotation);
     const bool held = !steered.hands.empty() && steered.hands.front().state == HandState::kHolding;
     if (held && turned > kHandTurnDeg) out.turned_deg = turned;  // who only wipes has not learnt to take hold
+    if (!held)
+      motion_.held_from.reset();
+    else if (motion_.held_from)
+      out.held_deg = turn_between_deg(*motion_.held_from, steered.view.rotation);
+    else
+      motion_.held_from = steered.view.rotation;
     if (out.two_hold) out.zoomed = std::abs(std::log(steered.view.zoom / view_->zoom));
   }
   // A mouse or a finger on the glass is a visitor's hand as well.
@@ -141,6 +122,7 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
   out.swiped = steered.swiped;
   out.can_open = can_unpack(moment.document);
   out.toured = tour_.walks();
+  out.can_tour = tour_.any() && !tour_.settling();
   view_ = steered.view;
   return out;
 }
@@ -168,6 +150,11 @@ void KioskGuide::obey(OperatorWish wish, Guidance& out) {
     case OperatorWish::kNextDisplay:
       out.commands.emplace_back("next_display");
       break;
+    case OperatorWish::kBrighter:
+    case OperatorWish::kDarker:
+      parts_.profile.brightness = std::clamp(
+          parts_.profile.brightness + (wish == OperatorWish::kBrighter ? kBrightnessStep : -kBrightnessStep), 0.1, 1.0);
+      break;
     case OperatorWish::kEnd:
       object_ = parts_.profile.objects.size();
       out.end = true;
@@ -175,8 +162,8 @@ void KioskGuide::obey(OperatorWish wish, Guidance& out) {
   }
   for (const OperatorRow& row : OperatorMenu::rows())
     if (row.wish == wish)
-      write("operator",
-            Journal::words("key", std::string_view(&row.key, 1)) + ", " + Journal::words("does", row.words));
+      diary_.write("operator",
+                   Journal::words("key", std::string_view(&row.key, 1)) + ", " + Journal::words("does", row.words));
 }
 
 /// Signs that hands may rest on, and what they chose.
@@ -219,7 +206,7 @@ void KioskGuide::take_sign(Sign sign, const GuideMoment& moment) {
       now.light = {moment.steered.view.light_azimuth_deg, moment.steered.view.light_elevation_deg};
       tour_.go(now);
       ++told_.tours;
-      write("tour", fmt::format("\"step\": {}", tour_.at() + 1));
+      diary_.write("tour", fmt::format("\"step\": {}", tour_.at() + 1));
       break;
     }
     case Sign::kNext:
@@ -291,6 +278,10 @@ void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, G
     motion_.unpack_goal = 0.0;
     tour_.forget();
     out.commands.emplace_back("reset");
+    if (parts_.profile.objects.size() > 1) {  // the next visitor has the next object
+      object_ = (object_ + 1) % parts_.profile.objects.size();
+      out.end = true;
+    }
   }
   const bool toured = tour_.walks() || tour_.settling();  // the envelope is the tour's
   const double unpack = toured ? motion_.unpack : towards(motion_.unpack, motion_.unpack_goal, dt / kUnpackS);
@@ -325,9 +316,25 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
   out.letter_mm = letter_height_mm(parts_.profile.eyes.reading_distance_m);
   out.dark = motion_.dark;
   out.signs = signs_;
-  if (menu_.open())
-    for (const OperatorRow& row : OperatorMenu::rows())
-      out.menu.push_back(fmt::format("{}  {}", row.key, tr_name("operator", row.words)));
+  if (menu_.open()) out.menu = operators_page();
+  return out;
+}
+
+/// What can be chosen, and how things stand.
+std::vector<std::string> KioskGuide::operators_page() const {
+  std::vector<std::string> out;
+  for (const OperatorRow& row : OperatorMenu::rows()) out.push_back(fmt::format("{}  {}", row.key, tr_name("operator", row.words)));
+  const KioskProfile& profile = parts_.profile;
+  std::string hours;
+  for (const QuietHours& quiet : profile.quiet)
+    hours += fmt::format("{}{:02}:{:02}-{:02}:{:02}", hours.empty() ? "" : ", ", quiet.from_min / 60,
+                         quiet.from_min % 60, quiet.to_min / 60, quiet.to_min % 60);
+  out.push_back(tr("operator.object_at", object_ + 1, profile.objects.size(), language(),
+                   fmt::format("{:.0f}", 100.0 * profile.brightness)));
+  out.push_back(tr("operator.visits", diary_.visits_today(visit_.counts().visits),
+                   hours.empty() ? tr("operator.never") : hours));
+  for (std::string& row : diary_.state()) out.push_back(std::move(row));
+  if (!parts_.version.empty()) out.push_back("dubsar " + parts_.version);
   return out;
 }
 
@@ -335,13 +342,14 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   Guidance out;
   if (told_.ready && moment.on_screen) notify_.alive(moment.now);  // dark or at rest it draws nothing, and lives
   menu_.tick(moment.now);
-  const WallTime wall = parts_.wall();
+  const WallTime wall = diary_.wall();
   if (!parts_.profile.key_file.empty() && wall.unix_s != told_.looked) {  // once a second
     std::error_code error;
     menu_.file_present(std::filesystem::exists(parts_.profile.key_file, error), moment.now);
   }
   told_.looked = wall.unix_s;
-  look_at_devices(moment.sources);
+  diary_.look_at_day(visit_.counts().visits);
+  diary_.look_at_devices(moment.sources);
   for (const OperatorWish wish : std::exchange(asked_.wishes, {})) obey(wish, out);
   if (!motion_.begun && moment.surface) begin_tour(moment);
   VisitMoment noticed = notice(moment);
@@ -349,20 +357,21 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   noticed.chose_open = chosen == Sign::kOpen || chosen == Sign::kClose;
   const VisitPicture visit = visit_.update(moment.now, noticed);
   phase_ = visit.phase;
-  if (visit.arrived) write("visit");
-  if (visit.reset) write("reset");
+  if (visit.arrived) diary_.write("visit");
+  if (visit.reset) diary_.write("reset");
   if (moment.trouble != told_.panel) {
     told_.panel = moment.trouble;
-    if (!told_.panel.empty()) write("trouble", Journal::words("says", told_.panel));
+    if (!told_.panel.empty()) diary_.trouble(told_.panel);
   }
   if (const std::int64_t hour = wall.unix_s / 3600; hour != told_.hour) {
     if (told_.hour >= 0) {
       const Visit::Counts& counts = visit_.counts();
-      write("hour",
-            fmt::format("\"visits\": {}, \"resets\": {}, \"turned\": {}, \"zoomed\": {}, \"opened\": {}, \"tours\": {}",
-                        counts.visits, counts.resets, counts.done[static_cast<std::size_t>(Lesson::kTurn)],
-                        counts.done[static_cast<std::size_t>(Lesson::kTwoHands)],
-                        counts.done[static_cast<std::size_t>(Lesson::kRest)], told_.tours));
+      diary_.write(
+          "hour",
+          fmt::format("\"visits\": {}, \"resets\": {}, \"turned\": {}, \"zoomed\": {}, \"opened\": {}, \"tours\": {}",
+                      counts.visits, counts.resets, counts.done[static_cast<std::size_t>(Lesson::kTurn)],
+                      counts.done[static_cast<std::size_t>(Lesson::kTwoHands)],
+                      counts.done[static_cast<std::size_t>(Lesson::kRest)], told_.tours));
       notify_.status(fmt::format("{} visits", counts.visits));
     }
     told_.hour = hour;

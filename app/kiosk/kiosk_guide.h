@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "app/kiosk/hand_rings.h"
-#include "app/kiosk/journal.h"
+#include "app/kiosk/kiosk_diary.h"
 #include "app/kiosk/kiosk_profile.h"
 #include "app/kiosk/operator_menu.h"
 #include "app/kiosk/service_notify.h"
@@ -19,17 +19,12 @@
 
 namespace dubsar::app {
 
-/// The time of the wall: seconds since 1970, and the local minute of the day.
-struct WallTime {
-  std::int64_t unix_s = 0;
-  int minute_of_day = 0;
-};
-
 struct KioskParts {
   KioskProfile profile{};
   Words words{};
   std::vector<Tour> tours{};  ///< of the profile's objects, in their order; missing or empty: what any tablet has
   HandZone zone{};
+  std::string version{};             ///< of the program, for the operator and the journal
   std::string trouble{};             ///< said at the beginning, as set_trouble()
   bool flat = false;                 ///< what is shown is flat in place of the profile's display
   std::function<WallTime()> wall{};  ///< none: that of this machine
@@ -48,7 +43,7 @@ class KioskGuide final : public SessionGuide {
 
   /// Another object, or the same again, is shown from now on.
   void begin_object();
-  /// Whether an operator ended the session.
+  /// Whether an operator ended the session, or the next object's turn has come: several change at each reset.
   bool ended() const noexcept { return told_.ended; }
   /// Which object the operator wants next, from 0 on; as many as there are: none, the kiosk is over.
   std::size_t object() const noexcept { return object_; }
@@ -73,6 +68,7 @@ class KioskGuide final : public SessionGuide {
     bool begun = false;      ///< the object's tour is known
     glm::dvec3 hand_m{0.0};  ///< of the visitor, where it was seen last
     bool wants_higher = false;
+    std::optional<glm::dquat> held_from{};  ///< where this hold began
   };
   /// What operators and fingers asked for since the last moment.
   struct Asked {
@@ -82,9 +78,7 @@ class KioskGuide final : public SessionGuide {
   };
   /// What was told to others, and when.
   struct Told {
-    std::string trouble;  ///< of the journal
-    std::string panel;    ///< that cannot be shown
-    std::string missing;  ///< devices that are not there
+    std::string panel;  ///< that cannot be shown
     std::int64_t hour = -1, looked = -1, tours = 0;
     bool ended = false, ready = false;  ///< ready: to the service manager
   };
@@ -96,13 +90,12 @@ class KioskGuide final : public SessionGuide {
   void walk(const GuideMoment& moment, Guidance& out);
   void move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out);
   GalleryPicture picture(const VisitPicture& visit) const;
-  void write(std::string_view what, std::string_view figures = {});
-  void look_at_devices(std::span<const SourceRow> sources);
+  std::vector<std::string> operators_page() const;
 
   KioskParts parts_;
   Visit visit_;
   OperatorMenu menu_;
-  Journal journal_;
+  KioskDiary diary_;
   ServiceNotify notify_;
   Asked asked_;
   TourWalk tour_;

@@ -17,9 +17,14 @@ bool is_digit(std::string_view key) { return key.size() == 1 && key[0] >= '0' &&
 
 const std::vector<OperatorRow>& OperatorMenu::rows() {
   static const std::vector<OperatorRow> all{
-      {'1', "next object", OperatorWish::kNextObject},   {'2', "next language", OperatorWish::kNextLanguage},
-      {'3', "begin again", OperatorWish::kReset},        {'4', "look for devices again", OperatorWish::kRetryDevices},
-      {'5', "next display", OperatorWish::kNextDisplay}, {'9', "end the kiosk", OperatorWish::kEnd},
+      {'1', "next object", OperatorWish::kNextObject},
+      {'2', "next language", OperatorWish::kNextLanguage},
+      {'3', "begin again", OperatorWish::kReset},
+      {'4', "look for devices again", OperatorWish::kRetryDevices},
+      {'5', "next display", OperatorWish::kNextDisplay},
+      {'+', "brighter", OperatorWish::kBrighter},
+      {'-', "darker", OperatorWish::kDarker},
+      {'9', "end the kiosk", OperatorWish::kEnd},
       {'0', "close this menu", OperatorWish::kClose},
   };
   return all;

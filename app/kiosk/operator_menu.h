@@ -10,7 +10,17 @@
 
 namespace dubsar::app {
 
-enum class OperatorWish { kClose, kNextObject, kNextLanguage, kReset, kRetryDevices, kNextDisplay, kEnd };
+enum class OperatorWish {
+  kClose,
+  kNextObject,
+  kNextLanguage,
+  kReset,
+  kRetryDevices,
+  kNextDisplay,
+  kBrighter,
+  kDarker,
+  kEnd
+};
 
 struct OperatorRow {
   char key;

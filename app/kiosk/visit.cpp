@@ -7,8 +7,9 @@
 namespace dubsar::app {
 namespace {
 
-constexpr double kTurnedDeg = 25.0;               // on purpose: further than a hand that only takes hold
-constexpr double kZoomed = 0.15;                  // a sixth larger or smaller
+constexpr double kTurnedDeg = 25.0;         // in all, on purpose: further than a hand that only takes hold
+constexpr double kTurnedInAHoldDeg = 12.0;  // as far as is seen as turned, and more than a tremble between two ends
+constexpr double kZoomed = 0.15;            // a sixth larger or smaller
 constexpr TimestampNs kPatience = 2 * kSecondNs;  // before the next thing is shown to somebody who is busy
 constexpr TimestampNs kLessonTime = 9 * kSecondNs, kLessonRest = 6 * kSecondNs;
 constexpr TimestampNs kUnseen = 5 * kSecondNs;     // without a hand, how to take hold makes room for how to be seen
@@ -20,6 +21,7 @@ constexpr TimestampNs kSunk = 300'000'000, kBack = kSecondNs, kAskedLong = 6 * k
 constexpr double kPerhapsLowM = 0.08;  // the further from the screen, the higher the sensor's sight ends
 constexpr TimestampNs kVanished = 200'000'000, kWantedLong = 4 * kSecondNs;
 constexpr int kMostShown = 3, kGrabMostShown = 6;  // nothing else goes without it
+constexpr int kOpenHandShown = 2;  // lessons to close a hand, before an open one is taught what it can do
 
 constexpr std::size_t index(Lesson lesson) { return static_cast<std::size_t>(lesson); }
 TimestampNs ns(double seconds) { return static_cast<TimestampNs>(1e9 * seconds); }
@@ -62,7 +64,7 @@ void Visit::learn(const VisitMoment& moment) {
   course_.zoomed += moment.zoomed;
   if (moment.hands > 0 && moment.hand <= HandState::kFist) done(Lesson::kShowHand);
   if (moment.hands > 0 && moment.hand == HandState::kHolding) done(Lesson::kGrab);
-  if (course_.turned_deg >= kTurnedDeg) done(Lesson::kTurn);
+  if (course_.turned_deg >= kTurnedDeg || moment.held_deg >= kTurnedInAHoldDeg) done(Lesson::kTurn);
   if (course_.zoomed >= kZoomed) done(Lesson::kTwoHands);
   if (moment.chose_open) {
     done(Lesson::kRest);
@@ -73,7 +75,20 @@ void Visit::learn(const VisitMoment& moment) {
   if (course_.done[index(Lesson::kTurn)]) phase_ = VisitPhase::kFree;
 }
 
+/// Was shown twice how to close, and did not: who cannot, or would not, wipes and walks the tour.
+bool Visit::never_closes(const VisitMoment& moment) const {
+  return moment.hands > 0 && !course_.done[index(Lesson::kGrab)] &&
+         course_.shown[index(Lesson::kGrab)] >= kOpenHandShown;
+}
+
 std::optional<Lesson> Visit::next(const VisitMoment& moment) const {
+  if (never_closes(moment)) {  // each as often as the other
+    const int swipes = course_.shown[index(Lesson::kSwipe)], tours = course_.shown[index(Lesson::kRest)];
+    const bool swipe = !course_.done[index(Lesson::kSwipe)] && swipes < kMostShown;
+    const bool tour = moment.can_tour && tours < kMostShown;
+    if (swipe && (swipes <= tours || !tour)) return Lesson::kSwipe;
+    if (tour) return Lesson::kRest;
+  }
   for (std::size_t i = 0; i < kLessonCount; ++i) {
     const auto lesson = static_cast<Lesson>(i);
     const bool holds = moment.hands > 0 && moment.hand == HandState::kHolding;
@@ -162,6 +177,7 @@ std::optional<Line> Visit::line(const VisitMoment& moment) const {
     if (moment.hand == HandState::kStranger) return Line::kSomebodyElse;
   }
   if (course_.asked >= 0) return Line::kShowHand;
+  if (course_.now == Lesson::kRest && phase_ == VisitPhase::kArrived) return Line::kRestTour;
   if (course_.now) return line_of(*course_.now);
   return std::nullopt;
 }

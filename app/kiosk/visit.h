@@ -13,8 +13,14 @@
 
 namespace dubsar::app {
 
+/// What a hand that is not told what to do finds out.
+struct VisitChances {
+  double held_deg = 0.0;  ///< the object's turn between the beginning of this hold and now; 0: nothing is held
+  bool can_tour = false;  ///< there is a sign that begins a tour
+};
+
 /// What is known at one moment.
-struct VisitMoment {
+struct VisitMoment : VisitChances {
   bool tracker = true;                 ///< there is a hand sensor
   bool touch = false;                  ///< there is a touch panel
   bool asleep = false;                 ///< quiet hours
@@ -79,6 +85,7 @@ class Visit {
   void teach(TimestampNs now, const VisitMoment& moment);
   void ask_for_height(TimestampNs now, const VisitMoment& moment);
   std::optional<double> sunk_s(TimestampNs now, const VisitMoment& moment);
+  bool never_closes(const VisitMoment& moment) const;
   std::optional<Line> line(const VisitMoment& moment) const;
 
   VisitFigures figures_;

@@ -30,6 +30,8 @@ constexpr std::array<Sentence, kLineCount> kSentences{{
      "Balayez de la main ouverte : la face suivante"},
     {Line::kRest, "rest", "Hold your open hand on the sign: the envelope opens",
      "Offene Hand auf das Zeichen: die Hülle öffnet sich", "Main ouverte sur le signe : l'enveloppe s'ouvre"},
+    {Line::kRestTour, "rest_tour", "Hold your open hand on the triangle: a tour begins",
+     "Offene Hand auf das Dreieck: ein Rundgang beginnt", "Main ouverte sur le triangle : une visite commence"},
     {Line::kNearer, "nearer", "A little nearer, please", "Bitte etwas näher", "Un peu plus près, s'il vous plaît"},
     {Line::kOpenFirst, "open_first", "Open your hand first", "Öffnen Sie zuerst die Hand", "Ouvrez d'abord la main"},
     {Line::kSomebodyElse, "somebody_else", "Somebody else holds it: you are next",
@@ -117,6 +119,8 @@ Result<Words> Words::parse(std::string_view json_text, std::string_view source) 
                     kLongestLine);
       own[static_cast<std::size_t>(found->line)] = sentence.get<std::string>();
     }
+    if (std::string& tour = own[static_cast<std::size_t>(Line::kRestTour)]; tour.empty())
+      tour = own[static_cast<std::size_t>(Line::kRest)];
     for (const Sentence& sentence : kSentences)
       if (own[static_cast<std::size_t>(sentence.line)].empty())
         return fail(ErrorKind::kConfig, "{}: {} is a new language and lacks the line \"{}\"", source, language,

@@ -22,6 +22,7 @@ enum class Line : std::uint8_t {
   kTwoHands,      ///< how to come nearer
   kSwipe,         ///< how to see another side
   kRest,          ///< how to open the envelope
+  kRestTour,      ///< how an open hand begins the tour
   kNearer,        ///< the hand is too far from the sensor
   kOpenFirst,     ///< a fist came in, which cannot take hold
   kSomebodyElse,  ///< another person holds the object
@@ -42,7 +43,7 @@ enum class Line : std::uint8_t {
   kTourLine,
   kTourLineText,
 };
-inline constexpr std::size_t kLineCount = 26;
+inline constexpr std::size_t kLineCount = 27;
 
 /// Name of a line in files of words: "show_hand".
 std::string_view line_name(Line line) noexcept;
@@ -53,7 +54,8 @@ class Words {
   /// The program's own sentences.
   Words();
   /// With the changes of a JSON text {"de": {"grab": "..."}, "ar": {...}}: languages are codes of two or three small
-  /// letters, sentences have 1 to 120 letters. A language that the program does not speak must have every line.
+  /// letters, sentences have 1 to 120 letters. A language that the program does not speak must have every line but
+  /// "rest_tour", which came later and is said as "rest" where it is missing.
   /// kConfig, by language and name, for anything else.
   static Result<Words> parse(std::string_view json_text, std::string_view source);
 

@@ -14,6 +14,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/kiosk/kiosk_check.h"
+#include "app/kiosk/kiosk_report.h"
 #include "app/kiosk/kiosk_screens.h"
 #include "app/kiosk/wanted_panel.h"
 #include "app/panels/text_ruler.h"
@@ -41,7 +42,9 @@ constexpr double kScreensHeightPx = 720.0;
 
 struct KioskRequest {
   std::string profile, pictures, size;
-  std::optional<Arguments> check;
+  std::string journal;
+  int days = 7;
+  std::optional<Arguments> check, report;
 };
 
 ErrorKind kind_of(const Error& error) { return is_mistake(error.kind) ? ErrorKind::kConfig : ErrorKind::kUnavailable; }
@@ -178,6 +181,7 @@ Result<int> write_screens(const KioskRequest& asked, const KioskCheck& check, st
   parts.profile = check.profile();
   parts.profile.objects = {object};
   parts.words = check.words();
+  parts.version = DUBSAR_VERSION;
   parts.tours = {check.tours()[at]};
   parts.zone = {1e-3 * view.mapping.hands.zone_min_mm, 1e-3 * view.mapping.hands.zone_max_mm};
   DUBSAR_ASSIGN(const auto screens, kiosk_screens(mesh, view, std::move(parts), progress));
@@ -226,20 +230,35 @@ Result<VerbResult> run_check(const KioskRequest& asked, Progress& progress) {
   return out;
 }
 
+Result<VerbResult> run_report(const KioskRequest& asked) {
+  DUBSAR_ASSIGN(const KioskReport report, kiosk_report(asked.journal, asked.days));
+  VerbResult out;
+  out.text = report.text;
+  out.json = {
+      {"days", report.days}, {"visits", report.visits}, {"troubles", report.troubles}, {"killed", report.killed}};
+  return out;
+}
+
 }  // namespace
 
 Verb add_kiosk_verb(Arguments program) {
-  Arguments command = program.command("kiosk", "look at a gallery's profile before its visitors do");
+  Arguments command = program.command("kiosk", "a gallery before its visitors come, and after");
   command.needs_command();
   command.footer(
-      "Examples:\n  dubsar kiosk check kiosk.json\n  dubsar kiosk check kiosk.json --pictures screens --panel 344x194");
+      "Examples:\n  dubsar kiosk check kiosk.json\n  dubsar kiosk check kiosk.json --pictures screens --panel 344x194\n"
+      "  dubsar kiosk report journal --days 30");
   auto options = std::make_shared<KioskRequest>();
   options->check = command.subcommand("check", "all that is wrong with a profile, each in one sentence with its place");
   options->check->reads("profile", options->profile, "the profile (docs/kiosk.md)").required().called("PROFILE.json");
   options->check->value("--pictures", options->pictures, "folder for a picture of each screen").called("DIR");
   options->check->value("--panel", options->size, "millimetres of the panel (its monitor's, else 344x194)")
       .called("WxH");
-  return {command, [options](const CommonOptions&, Progress& progress) { return run_check(*options, progress); }};
+  options->report = command.subcommand("report", "what a kiosk's journal says, a paragraph a day");
+  options->report->value("journal", options->journal, "the journal's folder").required().called("DIR");
+  options->report->value("--days", options->days, "how many, the last ones").range(1, 3660);
+  return {command, [options](const CommonOptions&, Progress& progress) {
+            return options->check->chosen() ? run_check(*options, progress) : run_report(*options);
+          }};
 }
 
 }  // namespace dubsar::app

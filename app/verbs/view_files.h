@@ -6,6 +6,7 @@
 
 #include "app/cli/input_options.h"
 #include "app/session/file_loader.h"
+#include "app/viewer/view_options.h"
 
 namespace dubsar::app {
 

@@ -143,6 +143,7 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
   parts.words = words;
   const HandMapping& hands = options.mapping.hands;
   parts.zone = {1e-3 * hands.zone_min_mm, 1e-3 * hands.zone_max_mm};
+  parts.version = DUBSAR_VERSION;
   parts.trouble = panel.trouble;
   parts.flat = panel.flat;
   parts.notify_socket = environment("NOTIFY_SOCKET");

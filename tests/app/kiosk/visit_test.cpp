@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <set>
+#include <vector>
+
+#include "core/base/system/second.h"
 
 namespace dubsar::app {
 namespace {
@@ -223,6 +227,48 @@ TEST(Visit, AClockThatJumpsBackEndsNothing) {
   const auto picture = visit.update(5'000'000'000, hand(HandState::kReady));
   EXPECT_EQ(picture.phase, VisitPhase::kFree);
   EXPECT_FALSE(picture.reset);
+}
+
+TEST(Visit, AHandThatNeverClosesIsTaughtToWipeAndToWalkTheTourAfterTwoLessons) {
+  Visit visit;
+  VisitMoment open = hand(HandState::kReady);
+  open.can_tour = true;
+  std::vector<Lesson> shown;
+  std::set<Line> said;
+  for (TimestampNs now = 0; now < 60 * kSecondNs; now += 100'000'000) {
+    const VisitPicture picture = visit.update(now, open);
+    if (picture.lesson && (shown.empty() || shown.back() != *picture.lesson || picture.lesson_s == 0.0))
+      shown.push_back(*picture.lesson);
+    if (picture.line) said.insert(*picture.line);
+  }
+  ASSERT_GE(shown.size(), 5U);
+  EXPECT_EQ(std::vector<Lesson>(shown.begin(), shown.begin() + 5),
+            (std::vector<Lesson>{Lesson::kGrab, Lesson::kGrab, Lesson::kSwipe, Lesson::kRest, Lesson::kSwipe}));
+  EXPECT_TRUE(said.contains(Line::kRestTour));
+  EXPECT_FALSE(said.contains(Line::kRest)) << "there is no envelope's sign before anything was turned";
+  Visit once;  // who has closed it once is taught to take hold as ever
+  for (TimestampNs now = 0; now < 40 * kSecondNs; now += 100'000'000) {
+    VisitMoment moment = hand(now < kSecondNs ? HandState::kHolding : HandState::kReady);
+    moment.can_tour = true;
+    const VisitPicture picture = once.update(now, moment);
+    EXPECT_NE(picture.lesson, Lesson::kSwipe);
+  }
+}
+
+TEST(Visit, TwelveDegreesInOneHoldAreTurnedAndAsMuchInThreeAreNot) {
+  for (const bool one : {true, false}) {
+    Visit visit;
+    for (int i = 0; i < 300; ++i) {
+      VisitMoment moment = hand(HandState::kHolding, 0.04);
+      moment.held_deg = 0.04 * (one ? i : i % 100);
+      visit.update(i * kStep, moment);
+    }
+    EXPECT_EQ(visit.counts().done[static_cast<std::size_t>(Lesson::kTurn)], 0);
+    VisitMoment moment = hand(HandState::kHolding, 0.1);
+    moment.held_deg = one ? 12.1 : 4.1;
+    visit.update(300 * kStep, moment);
+    EXPECT_EQ(visit.counts().done[static_cast<std::size_t>(Lesson::kTurn)], one ? 1 : 0);
+  }
 }
 
 }  // namespace
