@@ -62,7 +62,7 @@ void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
     for (const GestureEvent& event : hand.events())
       steered.swiped = steered.swiped || event.kind == GestureKind::kSwipe;
   if (person_.head) steered.eyes.presence = Presence::kTracked;
-  guidance_ = guide_.lead({now, steered, document_, rows_, kWindowMm, {0, 0}});
+  guidance_ = guide_.lead({now, steered, document_, rows_, kWindowMm, {0, 0}, {}, {}, true, on_screen_});
   navigator_.set_scene(guidance_.gestures);
   for (const std::string& command : guidance_.commands) {
     if (command.rfind("unpack ", 0) == 0) document_.unpack = 0.01 * std::stod(command.substr(7));

@@ -23,6 +23,7 @@ class GallerySession {
   void go_on(TimestampNs now, const InputFrame& frame);
   /// The tracker is there, or not.
   void set_tracker(SourceHealth health) { rows_[0].health = health; }
+  void set_on_screen(bool on_screen) { on_screen_ = on_screen; }
   /// How often the envelope was asked for, by anybody.
   std::int64_t chosen() const { return guide_.visit().counts().openings; }
   const SeenScreen& screen() const { return screen_; }
@@ -42,6 +43,7 @@ class GallerySession {
   KioskGuide guide_;
   Document document_;
   std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
+  bool on_screen_ = true;
   KeptPerson person_;
   SeenScreen screen_;
   Guidance guidance_;

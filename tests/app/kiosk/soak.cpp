@@ -19,6 +19,7 @@
 #include "tests/app/kiosk/gallery_session.h"
 #include "tests/app/kiosk/gallery_visit.h"
 #include "tests/app/kiosk/service_manager.h"
+#include "tests/app/kiosk/soak_day.h"
 #include "tests/app/kiosk/soak_figures.h"
 #include "tests/display/test_meshes.h"
 #include "tests/display/xvfb_server.h"
@@ -27,84 +28,6 @@ namespace dubsar::app::test {
 namespace {
 
 constexpr TimestampNs kSecond = 1'000'000'000;
-constexpr double kFaultEveryS = 60.0, kFaultAtS = 20.0, kFaultS = 5.0;
-constexpr double kWatchdogS = 20.0;  // of the unit
-constexpr auto kWatchdogUs = static_cast<std::int64_t>(1e6 * kWatchdogS);
-enum class Fault { kUnplugged, kServiceDies, kMonitorLost, kClockJumps, kSuspended };
-constexpr std::array<std::string_view, 5> kFaultNames{"tracker unplugged", "service dies", "monitor lost",
-                                                      "clock jumps", "suspended"};
-
-/// One visitor after another, whoever they are, with crowds, sun and reflections; endless.
-class People {
- public:
-  void step(double t_s, const SeenScreen& seen, InputFrame& frame) {
-    if (!room_ || t_s >= until_s_) {
-      room_.emplace(draw_gallery(kNaiveKinds[number_ % kNaiveKinds.size()], 4'400'000 + number_));
-      gallery_ = std::make_unique<Gallery>(*room_);
-      ++number_;
-      from_s_ = t_s;
-      until_s_ = t_s + room_->leaves_s + 4.0 + (number_ % 8 == 0 ? 120.0 : 5.0);  // at times nobody comes
-    }
-    const TimestampNs from = static_cast<TimestampNs>(1e9 * from_s_);
-    if (!gallery_->step(t_s - from_s_, seen, frame)) return;
-    frame.time += from;
-    for (HandFrame& hand : frame.hands) hand.time += from;
-    for (HeadFrame& head : frame.heads) head.time += from;
-  }
-
- private:
-  std::optional<GalleryOptions> room_;
-  std::unique_ptr<Gallery> gallery_;
-  std::uint64_t number_ = 0;
-  double from_s_ = 0.0, until_s_ = 0.0;
-};
-
-/// Simulated time, no pictures: memory, and how soon a hand that is seen after a fault has its ring.
-SoakFigures simulate(double hours) {
-  SoakFigures out;
-  ServiceManager manager;
-  GallerySession session(manager.path(), kWatchdogUs);
-  People people;
-  InputFrame frame;
-  constexpr double kStepS = 1.0 / 60.0;
-  double away_s = 0.0;  // suspended, in all
-  double fault_end = -1.0, hand_since = -1.0;
-  std::int64_t minute = -1;
-  for (double t = 0.0; t < 3600.0 * hours; t += kStepS) {
-    const auto fault = static_cast<Fault>(static_cast<std::int64_t>(t / kFaultEveryS) % 5);
-    const double in_minute = std::fmod(t, kFaultEveryS);
-    const bool broken = in_minute >= kFaultAtS && in_minute < kFaultAtS + kFaultS;
-    const bool blind = broken && (fault == Fault::kUnplugged || fault == Fault::kServiceDies);
-    if (const auto now = static_cast<std::int64_t>(t / kFaultEveryS); now != minute) {
-      minute = now;
-      out.never_back += hand_since >= 0.0;
-      fault_end = hand_since = -1.0;
-      out.memory.push_back({t / 3600.0, resident_mib()});
-    }
-    if (broken && fault == Fault::kSuspended && in_minute - kFaultAtS < kStepS) away_s += 1800.0;
-    if (broken && fault == Fault::kClockJumps && in_minute - kFaultAtS < kStepS) away_s -= std::min(away_s, 600.0);
-    session.set_tracker(blind ? SourceHealth::kMissing : SourceHealth::kPresent);
-    people.step(t, session.screen(), frame);
-    InputFrame seen = frame;
-    const auto shift = static_cast<TimestampNs>(1e9 * away_s);
-    seen.time += shift;
-    for (HandFrame& hand : seen.hands) hand.time += shift;
-    if (blind) seen = {};
-    session.go_on(static_cast<TimestampNs>(1e9 * (t + away_s)), seen);
-    manager.watch(t, kWatchdogS);
-    if (in_minute >= kFaultAtS + kFaultS && in_minute - kStepS < kFaultAtS + kFaultS) fault_end = t;
-    if (fault_end >= 0.0 && hand_since < 0.0 && !seen.hands.empty()) hand_since = t;  // nobody may be there
-    if (hand_since < 0.0) continue;
-    if (session.guidance().lines.size() < seen.hands.size() || seen.hands.empty()) continue;
-    out.recovery_s[std::string(kFaultNames[static_cast<std::size_t>(fault)])].push_back(t - hand_since);
-    fault_end = hand_since = -1.0;
-  }
-  out.visits = session.visit().counts().visits;
-  out.restarts = manager.restarts();
-  out.silence_s = manager.longest_silence_s();
-  return out;
-}
-
 /// The tracker of the drawn kiosk: the same people, in real time; a fault takes it away.
 struct Tracker {
   std::mutex mutex;
@@ -245,7 +168,7 @@ Result<SoakFigures> draw(double minutes, const TriMesh& mesh) {
       out.memory.push_back({t / 3600.0, resident_mib()});
       sampled = now;
     }
-    const auto fault = static_cast<Fault>(static_cast<std::int64_t>(t / kFaultEveryS) % 5);
+    const auto fault = static_cast<Fault>(static_cast<std::int64_t>(t / kFaultEveryS) % kDrawnFaults);
     const bool breaks = in_minute >= kFaultAtS && in_minute < kFaultAtS + kFaultS;
     if (breaks == broken) return;
     broken = breaks;
@@ -275,6 +198,8 @@ Result<SoakFigures> draw(double minutes, const TriMesh& mesh) {
         if (broken) suspend(static_cast<int>(kFaultS));
         guide.was_stopped();
         break;
+      default:  // those that are simulated only
+        break;
     }
     if (!broken) guide.fault_ends(kFaultNames[static_cast<std::size_t>(fault)], clock.now());
   };
@@ -301,7 +226,7 @@ int main(int argc, char** argv) {
   const double hours = argc > 1 ? std::atof(argv[1]) : 8.0, minutes = argc > 2 ? std::atof(argv[2]) : 30.0;
   bool good = true;
   if (hours > 0) {
-    const SoakFigures simulated = simulate(hours);
+    const SoakFigures simulated = simulate_day(hours);
     good = holds(simulated, false);
     fmt::print("{} simulated hours without drawing\n{}\n", hours, describe(simulated, false));
   }
