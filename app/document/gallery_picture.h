@@ -37,6 +37,9 @@ inline constexpr double kSignMargin = 0.035;
 /// that play with the object rarely rest.
 std::vector<SignPicture> place_signs(std::span<const Sign> signs, double aspect);
 
+/// Of a panel's height, above and below the object: what words take (app/panels/gallery_page.h).
+inline constexpr double kWordsShare = 0.2;
+
 /// The same signs on a panel of another shape, as full as they are.
 std::vector<SignPicture> signs_on(std::span<const SignPicture> signs, double aspect);
 
@@ -50,7 +53,7 @@ struct GalleryPicture {
   double letter_mm = 8.0;          ///< height of the letters on the panel
   double dark = 0.0;               ///< 0..1: how much of the light is taken away
   std::vector<SignPicture> signs;  ///< that hands may rest on
-  std::vector<std::string> menu;   ///< rows of the operator's menu; empty: closed
+  std::vector<std::string> menu;   ///< rows of the operator's page; empty: closed
   friend bool operator==(const GalleryPicture&, const GalleryPicture&) = default;
 };
 

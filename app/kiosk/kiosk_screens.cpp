@@ -23,7 +23,7 @@ class QuietSensor final : public InputSource {
 /// Goes from screen to screen; wants() is the one that the picture of the last moment shows.
 class ScreenDirector final : public SessionGuide {
  public:
-  ScreenDirector(KioskGuide& kiosk, std::string pin) : kiosk_(kiosk), pin_(std::move(pin)) {}
+  ScreenDirector(KioskGuide& kiosk, std::string pin, bool words) : kiosk_(kiosk), pin_(std::move(pin)), words_(words) {}
   bool takes(const InputEvent& event, TimestampNs now) override { return kiosk_.takes(event, now); }
   void presented(TimestampNs now) override { kiosk_.presented(now); }
   const char* wants() const noexcept { return wants_; }
@@ -47,6 +47,12 @@ class ScreenDirector final : public SessionGuide {
     Guidance out = kiosk_.lead(seen);
     wants_ = nullptr;
     if (out.picture) look_at(*out.picture, out);
+    if (out.picture && !words_) {
+      out.picture->title.clear();
+      out.picture->line.clear();
+      if (!out.picture->menu.empty()) out.picture->menu = {" "};
+      out.picture->steps = 0;
+    }
     return out;
   }
 
@@ -147,6 +153,7 @@ class ScreenDirector final : public SessionGuide {
 
   KioskGuide& kiosk_;
   std::string pin_;
+  bool words_;
   At at_ = At::kAttract;
   TimestampNs now_ = 0, since_ = -1;
   double turned_ = 0.0;
@@ -157,7 +164,7 @@ class ScreenDirector final : public SessionGuide {
 }  // namespace
 
 Result<std::vector<KioskScreen>> kiosk_screens(const TriMesh& mesh, ViewOptions view, KioskParts parts,
-                                               Progress& progress) {
+                                               Progress& progress, bool words) {
   KioskProfile& profile = parts.profile;
   profile.journal.clear();
   profile.key_file.clear();
@@ -166,8 +173,9 @@ Result<std::vector<KioskScreen>> kiosk_screens(const TriMesh& mesh, ViewOptions 
   if (profile.pin.empty()) profile.pin = kScreensPin;
   const std::string pin = profile.pin;
   KioskGuide kiosk(std::move(parts));
-  ScreenDirector director(kiosk, pin);
+  ScreenDirector director(kiosk, pin, words);
   view.guide = &director;
+  view.stage.room.words = kWordsShare;
   view.window.reset();
   view.inputs = {"hands"};
   view.sources.make = [](std::string_view, const InputConfig&) -> Result<std::unique_ptr<InputSource>> {

@@ -7,6 +7,7 @@
 
 #include "app/panels/lesson_picture.h"
 #include "app/panels/panel_font.h"
+#include "app/stage/ground_color.h"
 #include "app/stage/right_to_left.h"
 
 namespace dubsar::app {
@@ -18,28 +19,38 @@ constexpr ImGuiWindowFlags kBare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFl
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                    ImGuiWindowFlags_NoBackground;
 
-/// A text in the middle of a width, on a dark ground; its lower edge at `bottom`. Returns its upper edge.
-float draw_words(const std::string& words, float size_px, float width, float bottom, bool right_to_left) {
-  if (words.empty()) return bottom;
+ImU32 ground_at(double dark) {
+  const auto light = static_cast<float>(1.0 - dark) / 255.0f;
+  return ImGui::GetColorU32(ImVec4(light * static_cast<float>(kGroundColor[0]),
+                                   light * static_cast<float>(kGroundColor[1]),
+                                   light * static_cast<float>(kGroundColor[2]), 1.0f));
+}
+
+/// The object's picture ends where words begin: they stand beside it, never on it.
+void fill_band(float top, float bottom, float width, double dark) {
+  ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(0.0f, top), ImVec2(width, bottom), ground_at(dark));
+}
+
+/// Lines one below the other, each in the middle of a width; from the right where one reads so.
+void draw_lines(const SetWords& set, float width, float top, bool right_to_left) {
   ImFont* const font = ImGui::GetFont();
-  const float room = kSentenceRoom * width;
-  const SetWords set = set_words(words, size_px, width, right_to_left);
-  const auto fitted = static_cast<float>(set.size);
-  const ImVec2 text(static_cast<float>(set.wide), static_cast<float>(set.tall));
-  const float left = right_to_left ? 0.5f * (width + room) - text.x : 0.5f * (width - text.x);
-  const float pad = 0.4f * fitted;
-  const ImVec2 at(left, bottom - text.y - pad);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(ImVec2(at.x - 1.5f * pad, at.y - pad), ImVec2(at.x + text.x + 1.5f * pad, bottom),
-                     ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.82f)), pad);
-  const ImU32 pale = ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f));
-  if (set.lines.empty()) list.AddText(font, fitted, at, pale, words.c_str(), nullptr, room);
+  const auto size = static_cast<float>(set.size);
+  const float right = 0.5f * (1.0f + kSentenceRoom) * width;
   for (std::size_t i = 0; i < set.lines.size(); ++i) {
-    const float wide = font->CalcTextSizeA(fitted, 1e6f, 0.0f, set.lines[i].c_str()).x;
-    const ImVec2 line(right_to_left ? at.x + text.x - wide : at.x, at.y + fitted * static_cast<float>(i));
-    list.AddText(font, fitted, line, pale, set.lines[i].c_str());
+    const float wide = font->CalcTextSizeA(size, 1e6f, 0.0f, set.lines[i].c_str()).x;
+    const ImVec2 at(right_to_left ? right - wide : 0.5f * (width - wide), top + size * static_cast<float>(i));
+    list.AddText(font, size, at, ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f)), set.lines[i].c_str());
   }
-  return at.y - pad;
+}
+
+void draw_sentence(const GalleryPicture& picture, float size_px, float width, float height) {
+  const float bottom = height - 0.03f * height;
+  if (picture.line.empty()) return;
+  const SetWords set = set_words(picture.line, size_px, width, picture.right_to_left);
+  const float top = bottom - static_cast<float>(set.tall), pad = 0.4f * static_cast<float>(set.size);
+  fill_band(top - pad, height, width, picture.dark);
+  draw_lines(set, width, top, picture.right_to_left);
 }
 
 /// A dot for each step of a tour, those that were seen and the present one full; from the right where one reads so.
@@ -48,9 +59,6 @@ void draw_steps(const GalleryPicture& picture, float width, float y, float radiu
   const ImU32 amber = ImGui::GetColorU32(ImVec4(0.85f, 0.64f, 0.25f, 1.0f));
   if (picture.steps == 0) return;
   const float apart = 4.0f * radius, middle = 0.5f * static_cast<float>(picture.steps + 1);
-  const float half = apart * middle;
-  list.AddRectFilled(ImVec2(0.5f * width - half, y - 2.0f * radius), ImVec2(0.5f * width + half, y + 2.0f * radius),
-                     ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.82f)), 2.0f * radius);
   for (std::size_t i = 1; i <= picture.steps; ++i) {
     const float aside = apart * (static_cast<float>(i) - middle);
     const ImVec2 at(0.5f * width + (picture.right_to_left ? -aside : aside), y);
@@ -61,15 +69,34 @@ void draw_steps(const GalleryPicture& picture, float width, float y, float radiu
   }
 }
 
+/// A title, and below it a tour's steps, in what signs leave of the width.
+void draw_title(const GalleryPicture& picture, float size_px, float width, float height) {
+  if (picture.title.empty() && picture.steps == 0) return;
+  float room = width;
+  for (const SignPicture& sign : picture.signs)
+    if (sign.at.y + sign.radius > 0.5 - kWordsShare)
+      room = std::min(room,
+                      (0.5f + static_cast<float>(sign.at.x)) * width - 1.1f * static_cast<float>(sign.radius) * height);
+  const SetWords set = set_words(picture.title, kTitleLarger * size_px, room, picture.right_to_left);
+  const float top = 0.03f * height, below = top + static_cast<float>(set.tall) + 0.3f * size_px;
+  fill_band(0.0f, below + (picture.steps > 0 ? 0.5f * size_px : 0.0f), width, picture.dark);
+  draw_lines(set, room, top, picture.right_to_left);
+  draw_steps(picture, room, below + 0.1f * size_px, 0.16f * size_px);
+}
+
 void draw_menu(const std::vector<std::string>& rows, float size_px, float width, float height) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* const font = ImGui::GetFont();
   float wide = 0.0f;
+  size_px = std::min(size_px, 0.9f * height / (1.5f * static_cast<float>(rows.size() + 2)));
+  for (const std::string& row : rows) {  // an operator stands near: all of a row is seen
+    const float at_size = font->CalcTextSizeA(size_px, 1e6f, 0.0f, row.c_str()).x;
+    size_px = std::min(size_px, size_px * std::max(0.5f, 0.9f * width / std::max(at_size, 1.0f)));
+  }
   for (const std::string& row : rows) wide = std::max(wide, font->CalcTextSizeA(size_px, 1e6f, 0.0f, row.c_str()).x);
   const float step = 1.5f * size_px, tall = step * static_cast<float>(rows.size());
   ImVec2 at(0.5f * (width - wide), 0.5f * (height - tall));
-  list.AddRectFilled(ImVec2(at.x - step, at.y - step), ImVec2(at.x + wide + step, at.y + tall + step),
-                     ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.96f)), 0.4f * step);
+  list.AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(width, height), ground_at(0.0));
   for (const std::string& row : rows) {
     list.AddText(font, size_px, at, ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f)), row.c_str());
     at.y += step;
@@ -140,8 +167,17 @@ SetWords set_words(const std::string& words, double size, double width, bool rig
     out.tall = static_cast<double>(set) * static_cast<double>(out.lines.size());
     return out;
   }
-  const ImVec2 text = font->CalcTextSizeA(set, 1e6f, room, words.c_str());
-  return {static_cast<double>(set), static_cast<double>(text.x), static_cast<double>(text.y)};
+  SetWords out{static_cast<double>(set)};
+  const char* const end = words.c_str() + words.size();
+  for (const char* begin = words.c_str(); begin < end;) {
+    const char* stop = std::max(font->CalcWordWrapPositionA(set / font->FontSize, begin, end, room), begin + 1);
+    out.lines.emplace_back(begin, stop);
+    out.wide = std::max(out.wide, static_cast<double>(long_at(set, out.lines.back())));
+    begin = stop;
+    while (begin < end && (*begin == ' ' || *begin == '\n')) ++begin;
+  }
+  out.tall = static_cast<double>(set) * static_cast<double>(out.lines.size());
+  return out;
 }
 
 void draw_gallery(const GalleryPicture& picture, float width, float height, float px_per_mm) {
@@ -154,18 +190,16 @@ void draw_gallery(const GalleryPicture& picture, float width, float height, floa
     list.AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(width, height),
                        ImGui::GetColorU32(ImVec4(0.0f, 0.0f, 0.0f, static_cast<float>(picture.dark))));
   const auto size = static_cast<float>(letters_size(picture.letter_mm, height, px_per_mm));
-  float bottom = height - 0.03f * height;
-  bottom = draw_words(picture.line, size, width, bottom, picture.right_to_left);
+  draw_sentence(picture, size, width, height);
   if (picture.lesson) {
     // Beside the object where there is room, else above the words.
     const bool wide = width > 1.25f * height;
     const float radius = wide ? std::min(0.2f * height, 0.16f * width) : std::min(0.14f * height, 0.2f * width);
-    const float x = wide ? 1.25f * radius : 0.5f * width, y = wide ? 0.55f * height : bottom - 1.15f * radius;
+    const float x = wide ? 1.25f * radius : 0.5f * width,
+                y = wide ? 0.55f * height : (1.0f - static_cast<float>(kWordsShare)) * height - 1.15f * radius;
     draw_lesson(lesson_pose(*picture.lesson, picture.lesson_s), x, y, radius);
   }
-  if (!picture.title.empty())
-    draw_words(picture.title, static_cast<float>(kTitleLarger) * size, width, 0.03f * height + 2.0f * size, picture.right_to_left);
-  draw_steps(picture, width, 0.03f * height + 2.5f * size, 0.16f * size);
+  draw_title(picture, size, width, height);
   for (const SignPicture& sign : picture.signs) draw_sign(sign, width, height);
   if (!picture.menu.empty()) draw_menu(picture.menu, std::max(size * 0.6f, 14.0f), width, height);
   ImGui::End();

@@ -20,7 +20,7 @@ double letters_size(double letter_mm, double height, double per_mm) noexcept;
 struct SetWords {
   double size = 0.0;
   double wide = 0.0, tall = 0.0;     ///< of all lines
-  std::vector<std::string> lines{};  ///< as they are seen, of texts with letters from right to left; else none
+  std::vector<std::string> lines{};  ///< as they are seen
 };
 /// Within a frame of Dear ImGui. `size` as of letters_size().
 SetWords set_words(const std::string& words, double size, double width, bool right_to_left = false);

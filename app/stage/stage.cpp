@@ -77,9 +77,11 @@ Result<void> Stage::Parts::prepare(OutputSink& with) {
   // The longest edge fits both ways, so that every side of the object does.
   const glm::dvec3 size = object.box.size();
   plane.magnification = options.magnification > 0 ? options.magnification
-                        : traits.worn             ? 1.0  // life size
-                                      : (1.0 - 2.0 * options.room.margin) * std::min(rect.size.x, rect.size.y) /
-                                            std::max({size.x, size.y, size.z, 1e-9});
+                        : traits.worn
+                            ? 1.0  // life size
+                            : std::min((1.0 - 2.0 * options.room.margin) * rect.size.x,
+                                       (1.0 - 2.0 * std::max(options.room.margin, options.room.words)) * rect.size.y) /
+                                  std::max({size.x, size.y, size.z, 1e-9});
   return {};
 }
 

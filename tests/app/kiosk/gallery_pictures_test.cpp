@@ -8,6 +8,8 @@
 #include <fstream>
 
 #include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_screens.h"
+#include "app/stage/ground_color.h"
 #include "app/viewer/run_view.h"
 #include "app/viewer/side_panels.h"
 #include "core/image_io/png_file.h"
@@ -231,6 +233,55 @@ TEST_F(GalleryPictures, TheObjectGlowsWhereTheHandWouldTakeItBeforeItDoes) {
   EXPECT_LT(glow_s, 3.5) << "soon after it came";
   EXPECT_FALSE(held) << "before the gesture";
   EXPECT_GT(last.at_mm.x, 0.0) << "on its side";
+}
+
+/// Pixels of words that have the object's next to them or below them: `bare` is the same picture without words.
+int words_on_the_object(const Image& with, const Image& bare) {
+  const auto apart = [](const std::uint8_t* a, const std::uint8_t* b) {
+    return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+  };
+  const std::uint8_t ground[3] = {kGroundColor[0], kGroundColor[1], kGroundColor[2]};
+  constexpr int kNear = 3;
+  int out = 0;
+  for (int y = kNear; y < with.height - kNear; ++y)
+    for (int x = kNear; x < with.width - kNear; ++x) {
+      if (apart(with.at(x, y), bare.at(x, y)) < 60 || *with.at(x, y) < 150) continue;  // no letter
+      bool object = false;
+      for (int dy = -kNear; dy <= kNear; ++dy)
+        for (int dx = -kNear; dx <= kNear; ++dx) {
+          const std::uint8_t *const here = with.at(x + dx, y + dy), *const was = bare.at(x + dx, y + dy);
+          object = object || (apart(here, was) <= 2 && apart(here, ground) > 12);  // it is seen there
+          object =
+              object || (apart(was, ground) > 12 && apart(here, ground) > 12 && apart(here, was) < 60);  // or through
+        }
+      out += object;
+    }
+  return out;
+}
+
+TEST_F(GalleryPictures, WordsStandBesideTheObjectAndNeverOnItOnEveryScreenOfThreeShapes) {
+  for (const auto& [width, height] : {std::pair{960, 540}, {720, 720}, {540, 960}}) {
+    Screen& screen = options_.stage.screen;
+    screen.width_px = screen.window_w = width;
+    screen.height_px = screen.window_h = height;
+    screen.width_mm = width > height ? 344.0 : 300.0 * width / height;
+    screen.height_mm = screen.width_mm * height / width;
+    KioskParts told = parts();
+    told.profile.objects[0].title = {{"en", "A sealed contract of two merchants from Kanesh"}};
+    const auto with = kiosk_screens(mesh_, options_, told, progress_);
+    const auto bare = kiosk_screens(mesh_, options_, told, progress_, false);
+    ASSERT_TRUE(with && bare);
+    ASSERT_EQ(with->size(), 6U) << width;
+    ASSERT_EQ(bare->size(), with->size());
+    int letters = 0;
+    for (std::size_t i = 0; i < with->size(); ++i) {
+      EXPECT_EQ(words_on_the_object((*with)[i].picture, (*bare)[i].picture), 0)
+          << (*with)[i].name << " " << width << "x" << height;
+      for (std::size_t p = 0; p < (*with)[i].picture.pixels.size(); ++p)
+        letters += (*with)[i].picture.pixels[p] > (*bare)[i].picture.pixels[p] + 60;
+    }
+    EXPECT_GT(letters, 10'000) << "else there were no words";
+  }
 }
 
 }  // namespace
