@@ -106,7 +106,7 @@ std::vector<Slip> slips() {
       {1, 1, R"( "attract_after_s": 9})", "neither \"pin\" nor \"key_file\" is given"},
       {8, 2, R"( "brightness": 7,)", "brightness is 7, expected 0.1 to 1"},
       {8, 2, R"( "idle_reset_s": "soon",)", "idle_reset_s is string, expected a number of 5 to 3600"},
-      {7, 2, R"( "quiet": ["25:00-09:00"],)", "25:00-09:00"},
+      {7, 12, R"( "quiet": ["25:00-09:00"],)", "25:00-09:00"},
       {7, 2, R"( "quiet": ["00:00-12:00", "12:00-00:00"],)", "dark all day and night; expected hours"},
       {4, 2, R"( "languages": [],)", "\"languages\" names none, expected such as"},
       {4, 28, R"( "languages": ["de", "en", "it"],)", "language \"it\" found, expected de, en, fr"},
