@@ -63,7 +63,7 @@ Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
   wanted.rings = model.rings;
   wanted.blur_vox = model.blur_vox;
   wanted.artefacts = model.artefacts;
-  wanted.written = !options.unwritten;
+  wanted.writing.written = !options.unwritten;
   if (options.scanned) {
     if (options.recipe)
       return fail(

@@ -28,7 +28,7 @@ std::unique_ptr<const Phantom> PhantomBuilder::build(const PhantomOptions& optio
   builder.shape_bodies();
   builder.shape_gap();
   builder.measure_glue();
-  if (phantom->options_.written) builder.write_tablet();
+  if (phantom->options_.writing.written) builder.write_tablet();
   builder.write_envelope();
   builder.index_wedges();
   builder.crack_envelope();

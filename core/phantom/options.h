@@ -36,6 +36,13 @@ struct AddedArtefacts {
   double holder = 0.0;   ///< density of the holder that the lower end stands in
 };
 
+/// How the tablet was written on.
+struct WritingOptions {
+  bool written = true;  ///< false: nobody wrote on the tablet
+  bool ruled = true;    ///< lines are ruled; nothing else changes
+  double pushed = 0.0;  ///< clay that a later wedge pushes into an earlier one beside it, of its depth
+};
+
 struct PhantomOptions {
   Dims dims{512, 272, 472};
   std::uint64_t seed = 1;
@@ -46,9 +53,7 @@ struct PhantomOptions {
   double contact_share = 0.0;     ///< of the tablet's surface that touches the envelope; 0: drawn from 0.08 to 0.26
   double gap_vox = 0.0;           ///< between tablet and envelope elsewhere; 0: 0.3 mm, at least some voxels
   double wedge_depth_vox = 0.0;   ///< of a usual wedge; 0: 7 voxels, or more where 3.6 mm a line are more
-  bool written = true;            ///< false: nobody wrote on the tablet
-  double pushed = 0.0;            ///< clay that a later wedge pushes into an earlier one beside it, of its depth
-  bool ruled = true;              ///< lines are ruled; nothing else changes
+  WritingOptions writing{};       ///< on the tablet
   double envelope_density = 1.0;  ///< of the envelope's clay, relative to the tablet's
   double rings = 0.0;             ///< standard deviation of ring artefacts, relative to clay
   double blur_vox = kUsualBlur;   ///< standard deviation of the point spread along each axis, 0.3 to 1.1

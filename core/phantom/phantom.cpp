@@ -26,8 +26,9 @@ Dual Phantom::impressions(const std::vector<Impression>& all, std::span<const st
     if (dot(d, d) >= impression.radius2) continue;
     const Dual later = impression.field.evaluate(point, depth);
     const float reach = impression.field.nominal();
-    if (options_.pushed > 0.0 && hollow.v < kFar && later.v < reach) {  // it pushes clay into those before it
-      const float t = 1.0f - std::max(later.v, 0.0f) / reach, most = static_cast<float>(options_.pushed) * reach;
+    if (options_.writing.pushed > 0.0 && hollow.v < kFar && later.v < reach) {  // it pushes clay into those before it
+      const float t = 1.0f - std::max(later.v, 0.0f) / reach,
+                  most = static_cast<float>(options_.writing.pushed) * reach;
       hollow = hollow + Dual{most * t * t, later.v > 0.0f ? later.g * (-2.0f * most * t / reach) : Float4{}};
     }
     hollow = smooth_min(hollow, later, edges_.rim_rounding);

@@ -69,7 +69,7 @@ void PhantomBuilder::write_block(Owner owner, const TextBlock& block) {
   Random random(seed(), 0x100 + 16 * static_cast<std::uint64_t>(owner) + static_cast<std::uint64_t>(block.side) +
                             1000 * static_cast<std::uint64_t>(signs_));
   const float pitch = line_pitch_, sign_height = kSignHeight * pitch;
-  if (p_.options_.ruled)
+  if (p_.options_.writing.ruled)
     body.rulings[static_cast<std::size_t>(block.side)].push_back(
         {block.top - static_cast<float>(block.lines) * pitch, pitch, block.lines + 1, block.half_length});
   for (int line = 0; line < block.lines; ++line) {

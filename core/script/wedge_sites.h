@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/script/imprint.h"
+#include "core/script/imprint/imprint.h"
 #include "core/script/tangent_patch.h"
 
 namespace dubsar {

@@ -113,11 +113,11 @@ std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed) {
     o.contact_share = kShare;
   });
   add("unwritten", [](auto& o) {
-    o.written = false;
+    o.writing.written = false;
     o.contact_share = kShare;
   });
   add("unwritten film", [](auto& o) {
-    o.written = false;
+    o.writing.written = false;
     o.contact = Contact::kFilm;
     o.contact_share = kShare;
   });

@@ -93,8 +93,9 @@ SurfaceModel surface_of(const phantom::PhantomOptions& options, const std::strin
   namespace fs = std::filesystem;
   const fs::path kept =
       fs::path(keep) / fmt::format("s{}_{}x{}x{}_d{:g}{}{}{}.exa", options.seed, options.dims.x, options.dims.y,
-                                   options.dims.z, options.wedge_depth_vox, options.written ? "" : "_unwritten",
-                                   options.ruled ? "" : "_unruled", options.pushed > 0.0 ? "_pushed" : "");
+                                   options.dims.z, options.wedge_depth_vox, options.writing.written ? "" : "_unwritten",
+                                   options.writing.ruled ? "" : "_unruled",
+                                   options.writing.pushed > 0.0 ? "_pushed" : "");
   if (!keep.empty() && fs::exists(kept)) return script_value(read_exa(kept, progress));
   const fs::path scan = fs::temp_directory_path() / fmt::format("dubsar_script_{}.h5", ::getpid());
   script_value(phantom::write_phantom(scan, std::nullopt, options, progress));
@@ -171,9 +172,9 @@ int run_script(int argc, char** argv) {
     options.dims = a.dims;
     options.seed = a.seed + static_cast<std::uint64_t>(k);
     options.wedge_depth_vox = a.unwritten ? 0.0 : a.depth;
-    options.written = !a.unwritten;
-    options.ruled = !a.unruled;
-    options.pushed = a.pushed;
+    options.writing.written = !a.unwritten;
+    options.writing.ruled = !a.unruled;
+    options.writing.pushed = a.pushed;
     const auto truth = script_value(phantom::Phantom::create(options));
     const SurfaceModel model = surface_of(options, a.keep, progress);
     TriMesh mesh = a.envelope ? script_value(make_tri_mesh(

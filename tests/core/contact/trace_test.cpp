@@ -50,7 +50,7 @@ TracedScan traced_scan(phantom::Contact contact, double film, std::uint64_t seed
   wanted.contact = contact;
   wanted.film_vox = film;
   wanted.contact_share = grid.glued;
-  wanted.written = written;
+  wanted.writing.written = written;
   const auto path = std::filesystem::temp_directory_path() / fmt::format("dubsar_trace_{}_{}.h5", ::getpid(), seed);
   SilentProgress progress;
   phantom::write_phantom(path, std::nullopt, wanted, progress).value();

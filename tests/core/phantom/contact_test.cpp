@@ -162,7 +162,7 @@ TEST(PhantomContact, OptionsAreObeyed) {
     std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
     EXPECT_NEAR(depths[depths.size() / 2], depth, 0.2 * depth);
   }
-  options.written = false;
+  options.writing.written = false;
   const auto unwritten = make(options);
   for (const Wedge& w : unwritten->wedges()) EXPECT_EQ(w.owner, Owner::kEnvelope);
   options.film_vox = 0.0;

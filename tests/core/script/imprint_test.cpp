@@ -1,6 +1,6 @@
 // The imprint's own figures: what was pressed is measured, whatever the direction.
 
-#include "core/script/imprint.h"
+#include "core/script/imprint/imprint.h"
 
 #include <gtest/gtest.h>
 

@@ -30,17 +30,21 @@ struct WedgeCounts {
   std::vector<int> wanted_of_kind, found_of_kind, wanted_of_side, found_of_side;
 };
 
-struct WedgeScore : WedgeCounts {
+/// Pairs of wedges that overlap and were both found.
+struct PairCounts {
+  int pairs = 0, pairs_told = 0, pairs_right = 0;  ///< of those, whose order of pressing is told, and rightly
+  std::vector<std::array<double, 2>> pair_clear;   ///< of pairs_told: how clear, and 1 if right
+};
+
+struct WedgeScore : WedgeCounts, PairCounts {
   int wanted = 0, found = 0;  ///< with air and deep enough; of those, found
   int drawn = 0, real = 0;    ///< found wedges; of those, with the head and direction of any wedge of the phantom
   int placed = 0;             ///< of those drawn, with the head of one whatever its direction
-  int pairs = 0, pairs_told = 0, pairs_right = 0;  ///< that overlap and were both found; of those, whose order is told
-  int kind_right = 0;                              ///< of `found`
+  int kind_right = 0;         ///< of `found`
   int line_right = 0;  ///< of `found`: in the line that was found for its own; each line that was found is one of
                        ///< those pressed, no two the same
   std::vector<double> depth_ratios, direction_deg, head_off_vox;  ///< of `found`: measured over true, and errors
   std::vector<JudgedWedge> judged;                                ///< one for each found wedge
-  std::vector<std::array<double, 2>> pair_clear;                  ///< of pairs_told: how clear, and 1 if right
   std::vector<int> missed;  ///< wedges of the phantom that were wanted and not found
   double recall() const { return wanted ? static_cast<double>(found) / wanted : 0.0; }
   double precision() const { return drawn ? static_cast<double>(real) / drawn : 1.0; }

@@ -1,10 +1,15 @@
-#include "core/script/imprint.h"
+#include "core/script/imprint/imprint.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/script/imprint/imprint_kernels.h"
+
 namespace dubsar {
+
+namespace kernels = imprint_kernels;
+
 namespace {
 
 // The groove behind a head: its depth and half width at T, of those of the head. By eye on shaded pictures of tablets;
@@ -21,40 +26,25 @@ constexpr Belief kBackBelief{-1.15, 0.35}, kFrontBelief{-0.22, 0.45}, kTailBelie
 constexpr double kWidthDeviation = 0.35, kDepthDeviation = 0.45;
 constexpr double kBeliefWeight = 4e-5;  // a deviation of one costs some hundredths of what a wedge explains
 
-/// The planes of an imprint, ready for many places.
-struct Planes {
-  explicit Planes(const Imprint& i)
-      : x(static_cast<float>(i.p[Imprint::kX])),
-        y(static_cast<float>(i.p[Imprint::kY])),
-        c(static_cast<float>(std::cos(i.p[Imprint::kAngle]))),
-        s(static_cast<float>(std::sin(i.p[Imprint::kAngle]))),
-        depth(static_cast<float>(i.depth())),
-        head(static_cast<float>(i.depth() / i.back())),
-        tip(static_cast<float>(i.depth() / i.front())),
-        flank(static_cast<float>(2.0 * i.depth() * (1.0 + i.back() / i.front()) / i.width())),
-        groove(i.tailed ? kGrooveDepth * depth : -1.0f),
-        groove_tip(i.tailed ? groove / static_cast<float>(std::exp(i.p[Imprint::kTail]) * i.width()) : 0.0f),
-        groove_flank(i.tailed ? groove / (0.5f * kGrooveWidth * static_cast<float>(i.width())) : 0.0f),
-        rounding(static_cast<float>(i.rounding)),
-        quarter(i.rounding > 0.0 ? static_cast<float>(0.25 / i.rounding) : 0.0f) {}
-  float at(float px, float py) const {
-    const float dx = px - x, dy = py - y;
-    return below(c * dx + s * dy, std::abs(c * dy - s * dx));
-  }
-  float below(float a, float b) const {
-    const float back = depth + a * head, behind = depth - a * tip - flank * b - rounded(2.0f * flank * b);
-    const float of_head = std::min(back, behind) - rounded(std::abs(back - behind));
-    const float of_tail =
-        a >= 0.0f ? groove - a * groove_tip - groove_flank * b - rounded(2.0f * groove_flank * b) : -1.0f;
-    return std::max(0.0f, std::max(of_head, of_tail));
-  }
-  /// What rounding takes where two planes are this far apart.
-  float rounded(float apart) const {
-    const float h = std::max(0.0f, rounding - apart);
-    return h * h * quarter;
-  }
-  float x, y, c, s, depth, head, tip, flank, groove, groove_tip, groove_flank, rounding, quarter;
-};
+kernels::Planes planes_of(const Imprint& i) {
+  kernels::Planes p{};
+  p.x = static_cast<float>(i.p[Imprint::kX]), p.y = static_cast<float>(i.p[Imprint::kY]);
+  p.c = static_cast<float>(std::cos(i.p[Imprint::kAngle])), p.s = static_cast<float>(std::sin(i.p[Imprint::kAngle]));
+  p.depth = static_cast<float>(i.depth());
+  p.head = static_cast<float>(i.depth() / i.back());
+  p.tip = static_cast<float>(i.depth() / i.front());
+  p.flank = static_cast<float>(2.0 * i.depth() * (1.0 + i.back() / i.front()) / i.width());
+  p.groove = i.tailed ? kGrooveDepth * p.depth : -1.0f;
+  p.groove_tip = i.tailed ? p.groove / static_cast<float>(std::exp(i.p[Imprint::kTail]) * i.width()) : 0.0f;
+  p.groove_flank = i.tailed ? p.groove / (0.5f * kGrooveWidth * static_cast<float>(i.width())) : 0.0f;
+  p.rounding = static_cast<float>(i.rounding);
+  p.quarter = i.rounding > 0.0 ? static_cast<float>(0.25 / i.rounding) : 0.0f;
+  return p;
+}
+
+kernels::Samples view_of(const DepthSamples& s) {
+  return {s.x.data(), s.y.data(), s.depth.data(), s.weight.data(), s.others.data(), s.size()};
+}
 
 double square(double v) { return v * v; }
 
@@ -104,13 +94,8 @@ double sum_of(std::size_t count, const Value& value) {
 }
 
 /// What model and others explain at each sample.
-void model_of(const Planes& planes, const DepthSamples& samples, std::vector<float>& out) {
-  const std::size_t count = samples.size();
-  const float* const x = samples.x.data();
-  const float* const y = samples.y.data();
-  const float* const others = samples.others.data();
-  float* const to = out.data();
-  for (std::size_t i = 0; i < count; ++i) to[i] = std::max(others[i], planes.at(x[i], y[i]));
+void model_of(const Imprint& imprint, const DepthSamples& samples, std::vector<float>& out) {
+  kernels::model(planes_of(imprint), view_of(samples), out.data());
 }
 
 /// Solves by Gauss elimination with pivots; false where there is no solution.
@@ -146,22 +131,33 @@ double Imprint::front() const { return std::exp(p[kFront] + p[kWidth]); }
 double Imprint::reach() const { return tailed ? std::max(front(), std::exp(p[kTail] + p[kWidth])) : front(); }
 
 void imprint_depths(const Imprint& imprint, const DepthSamples& samples, std::vector<float>& out) {
-  const Planes planes(imprint);
+  const std::vector<float> none(samples.size(), 0.0f);
+  kernels::Samples view = view_of(samples);
+  view.others = none.data();
   out.resize(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) out[i] = planes.at(samples.x[i], samples.y[i]);
+  kernels::model(planes_of(imprint), view, out.data());
 }
 
 void explain_by_other(const Imprint& imprint, const ImprintView& view, DepthSamples& samples) {
   constexpr float kOtherSheet = 1.5f;
-  const Planes planes(imprint);
+  const std::size_t count = samples.size();
   const auto on = [](const std::array<float, 4>& f, float x, float y, float z) {
     return f[0] + f[1] * x + f[2] * y + f[3] * z;
   };
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const float x = samples.x[i], y = samples.y[i], z = samples.level[i];
-    const float depth = planes.below(on(view.along, x, y, z), std::abs(on(view.across, x, y, z)));
-    if (depth > samples.others[i] && std::abs(on(view.above, x, y, z)) < kOtherSheet) samples.others[i] = depth;
+  std::vector<float> along(count), across(count), depth(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    along[i] = on(view.along, samples.x[i], samples.y[i], samples.level[i]);
+    across[i] = on(view.across, samples.x[i], samples.y[i], samples.level[i]);
   }
+  kernels::Planes planes = planes_of(imprint);
+  planes.x = planes.y = planes.s = 0.0f, planes.c = 1.0f;  // the view is its own frame
+  kernels::Samples own = view_of(samples);
+  own.x = along.data(), own.y = across.data();
+  kernels::model(planes, own, depth.data());
+  for (std::size_t i = 0; i < count; ++i)
+    if (depth[i] > samples.others[i] &&
+        std::abs(on(view.above, samples.x[i], samples.y[i], samples.level[i])) < kOtherSheet)
+      samples.others[i] = depth[i];
 }
 
 double empty_energy(const DepthSamples& samples, const FitOptions& options) {
@@ -173,12 +169,9 @@ double empty_energy(const DepthSamples& samples, const FitOptions& options) {
 
 double imprint_energy(const Imprint& imprint, const DepthSamples& samples, const UsualImprint& usual,
                       const FitOptions& options) {
-  const Planes planes(imprint);
-  const auto deeper = static_cast<float>(options.deeper);
-  const double sum = sum_of(samples.size(), [&](std::size_t i) {
-    const float model = std::max(samples.others[i], planes.at(samples.x[i], samples.y[i]));
-    return samples.weight[i] * loss(samples.depth[i] - model, deeper);
-  });
+  const kernels::Loss loss{1.0f / kImprintSquare, kImprintSquare, 1.0f / kImprintMost,
+                           static_cast<float>(options.deeper)};
+  const double sum = kernels::misfit(planes_of(imprint), view_of(samples), loss);
   return sum * static_cast<double>(samples.area) + belief_cost(imprint, usual);
 }
 
@@ -195,7 +188,7 @@ double fit_imprint(Imprint& imprint, const DepthSamples& samples, const UsualImp
   for (int round = 0; round < options.rounds; ++round) {
     std::array<std::array<double, 8>, 8> h{};
     std::array<double, 8> g{};
-    model_of(Planes(imprint), samples, here);
+    model_of(imprint, samples, here);
     const auto deeper = static_cast<float>(options.deeper);
     for (std::size_t i = 0; i < count; ++i) {
       const float r = samples.depth[i] - here[i], flat = 1.0f + r * r * (1.0f / (kImprintMost * kImprintSquare));
@@ -205,14 +198,14 @@ double fit_imprint(Imprint& imprint, const DepthSamples& samples, const UsualImp
     for (std::size_t k = 0; k < used; ++k) {
       Imprint one = imprint;
       one.p[k] += kSteps[k];
-      model_of(Planes(one), samples, slope[k]);
+      model_of(one, samples, slope[k]);
       const auto per_step = static_cast<float>(1.0 / kSteps[k]);
       for (std::size_t i = 0; i < count; ++i) slope[k][i] = (slope[k][i] - here[i]) * per_step;
     }
     for (std::size_t a = 0; a < used; ++a) {
-      g[a] = sum_of(count, [&](std::size_t i) { return slope[a][i] * rest[i]; });
+      g[a] = kernels::product(slope[a].data(), rest.data(), count);
       for (std::size_t b = a; b < used; ++b)
-        h[a][b] = h[b][a] = sum_of(count, [&](std::size_t i) { return weight[i] * slope[a][i] * slope[b][i]; });
+        h[a][b] = h[b][a] = kernels::product(weight.data(), slope[a].data(), slope[b].data(), count);
     }
     add_beliefs(imprint, usual, h, g);
     bool better = false;
