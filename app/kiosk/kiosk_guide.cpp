@@ -14,14 +14,11 @@ namespace {
 
 constexpr double kSwayDeg = 12.0, kSwayPeriodS = 22.0;  // at most 4 degrees a second
 constexpr double kSwayRiseS = 4.0, kSwayFallS = 2.0, kUnpackS = 2.0, kDarkS = 3.0;
-constexpr double kAsleepDark = 0.97;
-constexpr double kBrightnessStep = 0.1;
+constexpr double kAsleepDark = 0.97, kBrightnessStep = 0.1;
 constexpr double kHandTurnDeg = 0.05;  // less is noise
 
 /// A step towards a goal at an even pace.
-double towards(double from, double to, double step) {
-  return from < to ? std::min(from + step, to) : std::max(from - step, to);
-}
+double towards(double from, double to, double step) { return std::clamp(to, from - step, from + step); }
 
 bool is_touched(const SourceRow& row) { return row.health == SourceHealth::kPresent && is_touch_panel(row); }
 
@@ -323,7 +320,8 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
 /// What can be chosen, and how things stand.
 std::vector<std::string> KioskGuide::operators_page() const {
   std::vector<std::string> out;
-  for (const OperatorRow& row : OperatorMenu::rows()) out.push_back(fmt::format("{}  {}", row.key, tr_name("operator", row.words)));
+  for (const OperatorRow& row : OperatorMenu::rows())
+    out.push_back(fmt::format("{}  {}", row.key, tr_name("operator", row.words)));
   const KioskProfile& profile = parts_.profile;
   std::string hours;
   for (const QuietHours& quiet : profile.quiet)
@@ -331,8 +329,8 @@ std::vector<std::string> KioskGuide::operators_page() const {
                          quiet.from_min % 60, quiet.to_min / 60, quiet.to_min % 60);
   out.push_back(tr("operator.object_at", object_ + 1, profile.objects.size(), language(),
                    fmt::format("{:.0f}", 100.0 * profile.brightness)));
-  out.push_back(tr("operator.visits", diary_.visits_today(visit_.counts().visits),
-                   hours.empty() ? tr("operator.never") : hours));
+  out.push_back(
+      tr("operator.visits", diary_.visits_today(visit_.counts().visits), hours.empty() ? tr("operator.never") : hours));
   for (std::string& row : diary_.state()) out.push_back(std::move(row));
   if (!parts_.version.empty()) out.push_back("dubsar " + parts_.version);
   return out;

@@ -51,8 +51,8 @@ struct ContactReport {
 Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, const ContactOptions& options,
                                     Progress& progress);
 
-/// The same where the scan is not asked: the contact is where the patches are, and all of it is inferred. A tenth of
-/// the time and memory.
+/// The same where the scan is not asked: the contact is where the patches are, and all of it is inferred. A quarter
+/// of the time; the peak of the whole run is 40 to 65 % lower.
 Result<ContactReport> follow_patches(SurfaceModel& model, Progress& progress);
 
 }  // namespace dubsar

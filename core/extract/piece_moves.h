@@ -23,7 +23,8 @@ using PlaceOfVertex = std::function<glm::vec3(std::uint32_t vertex, const glm::v
 /// Moves mesh.positions of an embedded mesh, few cells, one after the other: to the mean of the crossings around each
 /// vertex, drawn towards the chords, or to other means in a fixed pseudo-random order, the first place at which nothing
 /// around comes to touch. Where there is none, the vertices of all polygons around go back to `safe`, the places of an
-/// extracted mesh, and all is tried again; then with each of them moved as those of the cell are. Deterministic. Costs a find_cuts(), and about 50 us for each place tried.
+/// extracted mesh, and all is tried again; then with each of them moved as those of the cell are. Deterministic. Costs
+/// a find_cuts(), and about 50 us for each place tried.
 PieceMoves part_pieces(QuadMesh& mesh, std::span<const glm::vec3> safe, const PlaceOfVertex& place);
 
 }  // namespace dubsar
