@@ -13,11 +13,15 @@ constexpr XrDuration kPatience = 50'000'000;  // for an image that the composito
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::create(Instance& instance, SessionGraphics wish) {
-  if (wish != SessionGraphics::kVulkan && instance.has_gl()) {
+  const bool may_be_gl = wish != SessionGraphics::kVulkan, may_be_vulkan = wish != SessionGraphics::kGl;
+  if ((!may_be_vulkan && !instance.has_gl()) || (!may_be_gl && !instance.has_vulkan()))
+    return fail(ErrorKind::kUnavailable, "openxr: runtime {} does not take {}, expected graphics=any",
+                instance.runtime(), may_be_gl ? "OpenGL (XR_KHR_opengl_enable)" : "Vulkan (XR_KHR_vulkan_enable2)");
+  if (may_be_gl && instance.has_gl()) {
     DUBSAR_ASSIGN(auto graphics, make_gl_graphics(instance));
     auto session = begin_with(instance, std::move(graphics));
     if (session || session.error().kind != ErrorKind::kUsage) return session;
-    if (wish == SessionGraphics::kGl || !instance.has_vulkan())
+    if (!may_be_vulkan || !instance.has_vulkan())
       return fail(
           ErrorKind::kUnavailable,
           "openxr: runtime {} takes no OpenGL session though it lists XR_KHR_opengl_enable, expected one that does",

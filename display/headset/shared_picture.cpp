@@ -98,7 +98,12 @@ Result<SharedPicture> SharedPicture::create(const VulkanDevice& vulkan, PixelSiz
   glCreateMemoryObjectsEXT(1, &out.object_);
   const GLint dedicated = GL_TRUE;
   glMemoryObjectParameterivEXT(out.object_, GL_DEDICATED_MEMORY_OBJECT_EXT, &dedicated);
-  glImportMemoryFdEXT(out.object_, needed.size, GL_HANDLE_TYPE_OPAQUE_FD_EXT, fd);  // takes the descriptor
+  glImportMemoryFdEXT(out.object_, needed.size, GL_HANDLE_TYPE_OPAQUE_FD_EXT, fd);  // takes the descriptor, unless
+  const GLenum refused = glGetError();
+  if (refused != GL_NO_ERROR) {
+    close(fd);
+    return fail(ErrorKind::kUnavailable, "openxr: OpenGL does not take Vulkan's memory (error 0x{:04x})", refused);
+  }
   glCreateTextures(GL_TEXTURE_2D, 1, &out.texture_);
   glTextureParameteri(out.texture_, GL_TEXTURE_TILING_EXT, GL_OPTIMAL_TILING_EXT);
   glTextureStorageMem2DEXT(out.texture_, 1, GL_RGBA8, size.width, size.height, out.object_, 0);

@@ -94,6 +94,21 @@ TEST_F(VulkanSession, ComesBackAfterALoss) {
   EXPECT_EQ(made_->sessions_ever, 4);
 }
 
+TEST_F(VulkanSession, WhatWasAskedForIsKeptWhereTheRuntimeHasOnlyTheOther) {
+  for (const auto& [spec, lacks] : {std::pair("openxr:graphics=gl", "OpenGL (XR_KHR_opengl_enable)"),
+                                    std::pair("openxr:graphics=vulkan", "Vulkan (XR_KHR_vulkan_enable2)")}) {
+    made_->reset();
+    (std::string_view(lacks).starts_with("OpenGL") ? made_->manners.lacks.gl : made_->manners.lacks.vulkan) = true;
+    open(spec);
+    EXPECT_FALSE(picture());  // the nominal one
+    EXPECT_FALSE(picture());
+    EXPECT_NE(sink_->note().find(lacks), std::string::npos) << sink_->note();
+    EXPECT_EQ(made_->sessions_ever, 0);
+    scene_.reset();
+    sink_.reset();
+  }
+}
+
 TEST_F(VulkanSession, AGraphicsThatIsNoneIsAMistakeOfUse) {
   const auto sink = SinkCatalog().make("openxr:graphics=metal");
   ASSERT_FALSE(sink);
