@@ -51,18 +51,8 @@ constexpr std::array<std::pair<std::string_view, ImGuiKey_>, 18> kEditKeys{{{"le
                                                                             {"x", ImGuiKey_X},
                                                                             {"z", ImGuiKey_Z}}};
 
-void add_font(float size_px, const std::uint16_t* letters) {
-  ImFontConfig font;
-  font.FontDataOwnedByAtlas = false;
-  const std::span<const unsigned char> data = panel_font();
-  // ImGui does not write to what it does not own.
-  ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()),
-                                             size_px, &font, letters);
-}
-
 void add_fonts(const std::uint16_t* letters) {
-  add_font(kLargeFontPx, letters);
-  add_font(kPanelFontPx, letters);
+  for (const float size_px : {kLargeFontPx, kPanelFontPx}) add_panel_font(*ImGui::GetIO().Fonts, size_px, letters);
 }
 
 constexpr ImGuiWindowFlags kPlain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |

@@ -1,5 +1,7 @@
 #include "app/panels/panel_font.h"
 
+#include <imgui.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -29,6 +31,15 @@ namespace dubsar::app {
 std::span<const unsigned char> panel_font() { return {dubsar_panel_font, dubsar_panel_font_end}; }
 
 /// From the font's own tables: "OS/2" tells capitals, "hhea" the size.
+ImFont* add_panel_font(ImFontAtlas& atlas, float size_px, const std::uint16_t* letters) {
+  ImFontConfig font;
+  font.FontDataOwnedByAtlas = false;
+  const std::span<const unsigned char> data = panel_font();
+  // ImGui does not write to what it does not own.
+  return atlas.AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()), size_px,
+                                    &font, letters);
+}
+
 double panel_capital() noexcept {
   const std::span<const unsigned char> font = panel_font();
   const auto word = [&](std::size_t at) {

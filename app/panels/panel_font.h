@@ -5,7 +5,13 @@
 #include <cstdint>
 #include <span>
 
+struct ImFont;
+struct ImFontAtlas;
+
 namespace dubsar::app {
+
+/// Adds it to an atlas, in this size and with these letters (panel_letters()).
+ImFont* add_panel_font(ImFontAtlas& atlas, float size_px, const std::uint16_t* letters);
 
 std::span<const unsigned char> panel_font();
 

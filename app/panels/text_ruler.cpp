@@ -25,11 +25,7 @@ TextRuler::TextRuler(double width_mm, double height_mm, double reading_distance_
   io.IniFilename = nullptr;
   io.DisplaySize = ImVec2(static_cast<float>(width_px_), static_cast<float>(kRulerPx));
   io.DeltaTime = 1.0f / 60.0f;
-  ImFontConfig config;
-  config.FontDataOwnedByAtlas = false;
-  const auto data = panel_font();
-  io.Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()), kLargeFontPx,
-                                 &config, panel_letters_of_all());
+  add_panel_font(*io.Fonts, kLargeFontPx, panel_letters_of_all());
   unsigned char* pixels = nullptr;
   int wide = 0, high = 0;
   io.Fonts->GetTexDataAsAlpha8(&pixels, &wide, &high);

@@ -15,23 +15,22 @@ Result<void> VulkanFunctions::open_library() {
   return {};
 }
 
-Result<void> VulkanFunctions::find_of(VkInstance instance) {
-#define DUBSAR_FIND(name)                                                      \
-  name = reinterpret_cast<PFN_##name>(vkGetInstanceProcAddr(instance, #name)); \
+#define DUBSAR_FIND(name)                                   \
+  name = reinterpret_cast<PFN_##name>(find(handle, #name)); \
   if (name == nullptr) return fail(ErrorKind::kUnavailable, "openxr: Vulkan has no {}", #name);
+
+Result<void> VulkanFunctions::find_of(VkInstance handle) {
+  const auto find = vkGetInstanceProcAddr;
   DUBSAR_VULKAN_OF_INSTANCE(DUBSAR_FIND)
-#undef DUBSAR_FIND
   return {};
 }
 
-Result<void> VulkanFunctions::find_of(VkDevice device) {
-#define DUBSAR_FIND(name)                                                  \
-  name = reinterpret_cast<PFN_##name>(vkGetDeviceProcAddr(device, #name)); \
-  if (name == nullptr) return fail(ErrorKind::kUnavailable, "openxr: the GPU's Vulkan driver has no {}", #name);
+Result<void> VulkanFunctions::find_of(VkDevice handle) {
+  const auto find = vkGetDeviceProcAddr;
   DUBSAR_VULKAN_OF_DEVICE(DUBSAR_FIND)
-#undef DUBSAR_FIND
   return {};
 }
+#undef DUBSAR_FIND
 
 Result<void> check_vulkan(VkResult result, const char* tried) {
   if (result >= 0) return {};

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/app/cli/block_obj.h"
 #include "tests/app/cli/run_program.h"
 
 namespace dubsar::test {
@@ -25,9 +26,7 @@ TEST_P(HandsOfEveryRate, AWipeTurnsTheObjectToItsNextSide) {
   const std::filesystem::path folder =
       std::filesystem::path(::testing::TempDir()) / fmt::format("hands_{}_{}_{}", ::getpid(), hands_hz, pictures_hz);
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "block.obj")
-      << "v 0 0 0\nv 20 0 0\nv 20 30 0\nv 0 30 0\nv 0 0 8\nv 20 0 8\nv 20 30 8\nv 0 30 8\n"
-         "f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n";
+  std::ofstream(folder / "block.obj") << kBlockObj;
   std::ofstream(folder / "wipe.json") << fmt::format(
       R"({{"seed": 3, "duration_s": 4, "rate_hz": {}, "noise_mm": 0.4, "hands": [{{"keys": [
         {{"t": 0.2, "at_mm": [-100, 0, 250]}}, {{"t": 1.2, "at_mm": [-100, 0, 250]}}, {{"t": 1.6, "at_mm": [100, 0, 250]}},

@@ -11,6 +11,7 @@
 #include <regex>
 
 #include "core/image_io/png_file.h"
+#include "tests/app/cli/block_obj.h"
 #include "tests/app/cli/run_program.h"
 
 namespace dubsar::test {
@@ -37,10 +38,7 @@ class KioskCheck : public ::testing::Test {
   void SetUp() override {
     folder_ = std::filesystem::path(::testing::TempDir()) / fmt::format("check_{}", ::getpid());
     std::filesystem::create_directories(folder_);
-    write(
-        "block.obj",
-        "v 0 0 0\nv 20 0 0\nv 20 30 0\nv 0 30 0\nv 0 0 8\nv 20 0 8\nv 20 30 8\nv 0 30 8\n"
-        "f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
+    write("block.obj", kBlockObj);
     write("broken.ply", "ply\nformat ascii 1.0\nelement vertex three\n");
     write("tour.json", kTour);
     write("words.json", R"({"de": {"grab": "Zugreifen!"}})");

@@ -27,11 +27,7 @@ class GalleryPage : public ::testing::Test {
     io.IniFilename = nullptr;
     io.DisplaySize = ImVec2(1920, 1080);
     io.DeltaTime = 1.0f / 60.0f;
-    ImFontConfig config;
-    config.FontDataOwnedByAtlas = false;
-    const auto data = panel_font();
-    io.Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()), kFontPx,
-                                   &config, panel_letters_of_all());
+    add_panel_font(*io.Fonts, kFontPx, panel_letters_of_all());
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
@@ -55,7 +51,7 @@ struct PanelSize {
 };
 
 TEST_F(GalleryPage, EverySentenceIsReadFromAMetreAndAHalfOnEveryPanelAndLeavesTheObjectItsPlace) {
-  constexpr double kDistance_m = 1.5, kLeast = 16.0;  // minutes of arc of a capital: ISO 9241-303
+  constexpr double kDistanceM = 1.5, kLeast = 16.0;  // minutes of arc of a capital: ISO 9241-303
   const Words words;
   for (const PanelSize& panel : {PanelSize{"24 inches", 531, 299, 1080},
                                  {"15.6 inches, 4K", 344, 194, 2160},
@@ -63,13 +59,13 @@ TEST_F(GalleryPage, EverySentenceIsReadFromAMetreAndAHalfOnEveryPanelAndLeavesTh
                                  {"portrait of 32 inches", 398, 708, 1920},
                                  {"Looking Glass 16", 345, 194, 819}}) {
     const double px_per_mm = panel.height_px / panel.height_mm, width = panel.width_mm * px_per_mm;
-    const double size = letters_size(letter_height_mm(kDistance_m), panel.height_px, px_per_mm);
+    const double size = letters_size(letter_height_mm(kDistanceM), panel.height_px, px_per_mm);
     for (const std::string& language : words.languages())
       for (std::size_t line = 0; line < kLineCount; ++line) {
         const std::string& text = words.say(static_cast<Line>(line), language);
         const SetWords set = set_words(text, size, width);
         const double capital_mm = set.size * panel_capital() / px_per_mm;
-        const double arc = 60.0 * 180.0 / std::numbers::pi * capital_mm / (1e3 * kDistance_m);
+        const double arc = 60.0 * 180.0 / std::numbers::pi * capital_mm / (1e3 * kDistanceM);
         EXPECT_GE(arc, kLeast) << panel.name << ": " << text;
         EXPECT_LE(set.wide, 0.9 * width) << panel.name << ": " << text;
         EXPECT_LE(set.tall, 0.36 * panel.height_px) << panel.name << ": " << text;

@@ -14,12 +14,8 @@ namespace {
 
 TEST(PanelFont, HasTheLettersOfEuropeanLanguagesAndOfTransliterations) {
   ImFontAtlas atlas;
-  ImFontConfig config;
-  config.FontDataOwnedByAtlas = false;
-  const auto data = panel_font();
-  ASSERT_GT(data.size(), 100'000u);
-  ImFont* const font = atlas.AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()),
-                                                  static_cast<int>(data.size()), 15.0f, &config, panel_letters());
+  ASSERT_GT(panel_font().size(), 100'000u);
+  ImFont* const font = add_panel_font(atlas, 15.0f, panel_letters());
   ASSERT_TRUE(atlas.Build());
   for (const int code : {0x0161 /* s caron */, 0x1e63 /* s dot */, 0x1e6d /* t dot */, 0x1e2b /* h breve */,
                          0x02be /* aleph */, 0x02bf /* ayin */, 0x2082 /* subscript 2 */, 0x2093 /* subscript x */,

@@ -70,12 +70,7 @@ class DrawnWords : public ::testing::Test {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
-    ImFontConfig font;
-    font.FontDataOwnedByAtlas = false;
-    const auto data = panel_font();
-    for (const float size : {15.0f, kLargeFontPx})
-      io.Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()), size,
-                                     &font, panel_letters());
+    for (const float size : {15.0f, kLargeFontPx}) add_panel_font(*io.Fonts, size, panel_letters());
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
