@@ -149,6 +149,37 @@ TEST(Layering, RoomsOfTheAppIncludeOnlyWhatTheyLink) {
   }
 }
 
+// A core build has neither graphics nor devices: what its verbs include, and what that includes, is core, words,
+// documents and the command line.
+TEST(Layering, VerbsOfACoreBuildReachNeitherWindowNorDevices) {
+  std::ifstream file(fs::path(DUBSAR_SOURCE_DIR) / "app/CMakeLists.txt");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t begin = text.find("set(core_verbs");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string list = text.substr(begin, text.find(')', begin) - begin);
+  std::multimap<std::string, std::string> includes;
+  for (const auto& [from, to] : all_includes()) includes.emplace(from, to);
+  std::vector<std::string> open{"app/core_main.cpp", "app/publish/surface_facts.cpp"};
+  const std::regex source(R"([a-z_]+/[a-z0-9_]+\.cpp)");
+  for (std::sregex_iterator it(list.begin(), list.end(), source), end; it != end; ++it)
+    open.push_back("app/" + it->str());
+  ASSERT_GE(open.size(), 10u);
+  const std::regex allowed("^app/(cli|document|words|verbs|publish)/.*");
+  std::set<std::string> seen(open.begin(), open.end());
+  while (!open.empty()) {
+    const std::string at = open.back();
+    open.pop_back();
+    for (auto [it, end] = includes.equal_range(at); it != end; ++it) {
+      const std::string& target = it->second;
+      for (const char* room : {"devices/", "input/", "display/"})
+        EXPECT_FALSE(starts_with(target, room)) << at << " includes " << target;
+      if (!starts_with(target, "app/")) continue;
+      EXPECT_TRUE(std::regex_match(target, allowed)) << at << " includes " << target;
+      if (seen.insert(target).second) open.push_back(target);
+    }
+  }
+}
+
 // docs/architecture.md, "a sink": its pair, one row of the table, its case in the test of directions, its row in the
 // docs.
 TEST(Layering, ASinkIsItsPairARowOfTheTableItsTestAndItsRowInTheDocs) {
