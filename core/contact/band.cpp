@@ -51,7 +51,7 @@ std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing)
         }
     }
   }
-  return points;
+  return thinned(points, 0.75f * spacing);
 }
 
 glm::vec3 middle_of(const std::vector<PatchPoint>& samples) {
@@ -61,6 +61,24 @@ glm::vec3 middle_of(const std::vector<PatchPoint>& samples) {
     most = glm::max(most, sample.position);
   }
   return samples.empty() ? glm::vec3(0.0f) : 0.5f * (least + most);
+}
+
+std::vector<PatchPoint> thinned(const std::vector<PatchPoint>& samples, float side) {
+  const glm::vec3 middle = middle_of(samples);
+  glm::vec3 half(0.0f);
+  for (const PatchPoint& sample : samples) half = glm::max(half, glm::abs(sample.position - middle));
+  const glm::ivec3 first(glm::ceil(half / side));
+  const glm::ivec3 cubes = 2 * first + 1;
+  BrickMap<std::uint8_t> taken({cubes.x, cubes.y, cubes.z}, 0);
+  std::vector<PatchPoint> few;
+  for (const PatchPoint& sample : samples) {
+    const glm::ivec3 at = first + glm::ivec3(glm::round((sample.position - middle) / side));
+    if (std::uint8_t& cube = taken.at(at.x, at.y, at.z); cube == 0) {
+      cube = 1;
+      few.push_back(sample);
+    }
+  }
+  return few;
 }
 
 Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<PatchPoint> samples, float reach,

@@ -35,8 +35,11 @@ struct PatchPoint {
 /// Is its `partition` the tablet's and its reverse the envelope's, or the other way round?
 bool is_contact_patch(const SurfaceModel& model, const FillPatch& patch);
 
-/// Points of such patches, at most `spacing` grid steps apart.
+/// Points of such patches, at most `spacing` grid steps apart in a triangle, thinned() to half of it.
 std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing);
+
+/// The first of those in each cube of that side; cubes are counted from the middle of all.
+std::vector<PatchPoint> thinned(const std::vector<PatchPoint>& samples, float side);
 
 /// Middle of the box around all samples. Statistics over pieces of the contact count the pieces from here: they are the
 /// same wherever the object lies on the grid, and mirrored where it is.

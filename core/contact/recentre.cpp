@@ -20,6 +20,7 @@ namespace {
 
 constexpr float kReach = 12.0f;    ///< on both sides of the patch, grid steps
 constexpr float kCubeSide = 8.0f;  ///< of the places whose heights are taken together: wider than a wedge
+constexpr float kThinned = 0.5f;   ///< cubes of which one sample is looked from, grid steps
 constexpr std::size_t kLeastCrossings = 24;
 constexpr float kAcross = 0.6f;  ///< cosine from which on a face lies along the contact
 /// Quantiles of heights whose mean is the ground: below lie wedges, above what noise lifted.
@@ -172,10 +173,10 @@ float height_at(const std::vector<Ground>& grounds, const glm::vec3& p) {
 /// height_at() on a lattice around the middle of the samples, and between its points.
 class HeightField {
  public:
-  HeightField(const ContactBand& band, const std::vector<Ground>& grounds)
-      : first_(first_point(band.samples)), heights_(size_of(band.samples, first_), kNotAsked) {
+  HeightField(const std::vector<PatchPoint>& samples, const std::vector<Ground>& grounds)
+      : first_(first_point(samples)), heights_(size_of(samples, first_), kNotAsked) {
     std::vector<glm::ivec3> points;
-    for (const PatchPoint& sample : band.samples)
+    for (const PatchPoint& sample : samples)
       each_corner(sample.position, [&](const glm::ivec3& q, float) {
         if (heights_.get(q.x, q.y, q.z) != kNotAsked) return;
         heights_.at(q.x, q.y, q.z) = 0.0f;
@@ -224,17 +225,17 @@ struct Ways {
   BandDensity density;
 };
 
-Result<Ways> ways_to_films(std::vector<PatchPoint> samples, const BitVolume& inside, SlabSource& density,
+Result<Ways> ways_to_films(const std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
                            int bricks_around, Progress& progress) {
-  DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, std::move(samples), kReach, progress));
+  DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, thinned(samples, kThinned), kReach, progress));
   DUBSAR_ASSIGN(BandDensity values, BandDensity::read(band, density, progress, bricks_around));
   DUBSAR_ASSIGN(const Dips dips, find_dips(band, inside, values, progress));
   DUBSAR_ASSIGN(const std::vector<ClaySide> side, ClayDivision({band, dips, {}, {}, {}}).sides(progress));
-  const HeightField heights(band, grounds_of(band, inside, dips, side));
-  std::vector<float> ways(band.samples.size());
+  const HeightField heights(samples, grounds_of(band, inside, dips, side));
+  std::vector<float> ways(samples.size());
   parallel_for(static_cast<std::int64_t>(ways.size()), 256, [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
-    ways[i] = heights.at(band.samples[i].position);
+    ways[i] = heights.at(samples[i].position);
   });
   return Ways{std::move(ways), std::move(values)};
 }
@@ -294,7 +295,7 @@ Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, con
   const BitVolume inside_half = halved_signs(inside, half.dims());
   DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 2.0f, rules, [&](std::vector<PatchPoint> from) {
                   for (PatchPoint& sample : from) sample.position = halved(sample.position);
-                  return ways_to_films(std::move(from), inside_half, half, 1, progress);
+                  return ways_to_films(from, inside_half, half, 1, progress);
                 }));
   recentred.density.reset();  // of another grid
   return recentred;

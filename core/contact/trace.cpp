@@ -10,6 +10,7 @@
 #include "core/contact/clay_sides.h"
 #include "core/contact/clays.h"
 #include "core/contact/dips.h"
+#include "core/contact/labelled/clay_labels.h"
 #include "core/contact/labelled/labelled_contact.h"
 #include "core/contact/pockets.h"
 #include "core/contact/recentre.h"
@@ -17,7 +18,7 @@
 namespace dubsar {
 namespace {
 
-constexpr float kSpacing = 0.7f;  ///< of samples of the patches, grid steps
+constexpr float kSpacing = 1.0f;  ///< of samples of the patches, grid steps
 /// Farthest that inferred contact is moved from the cut: staircases of the cut go, nothing runs through anything else.
 constexpr float kMostMove = 1.5f;
 /// Of the band where only the patches are asked: beyond the faces at their rim that vote (pockets.cpp).
@@ -36,13 +37,15 @@ struct SurfaceBeside {
   FaceGraph graph;
   std::vector<BandFace> faces;
   std::vector<ClayCavity> pores;
+  ClayBeyond beyond;
 
   static Result<SurfaceBeside> find(const SurfaceModel& model, const ContactBand& band, Progress& progress) {
     DUBSAR_ASSIGN(EdgeIndex index, EdgeIndex::create(model.samples));
     DUBSAR_ASSIGN(FaceGraph graph, FaceGraph::build(model.mesh, progress));
     std::vector<BandFace> faces = faces_of_band(model, index, band);
     std::vector<ClayCavity> pores = cavities_off_contact(model, graph, band, faces);
-    return SurfaceBeside{std::move(index), std::move(graph), std::move(faces), std::move(pores)};
+    return SurfaceBeside{std::move(index), std::move(graph), std::move(faces), std::move(pores),
+                         ClayBeyond(model.samples.signs, band)};
   }
 };
 
@@ -57,6 +60,7 @@ Result<std::vector<ClaySide>> divide(const SurfaceModel& model, const ContactBan
 DividedClay divided(const ContactBand& band, const Dips& dips, const SurfaceBeside& beside,
                     const std::vector<ClaySide>& side) {
   return {.band = band,
+          .beyond = beside.beyond,
           .dips = dips,
           .index = beside.index,
           .graph = beside.graph,

@@ -5,79 +5,12 @@
 #include <bit>
 
 #include "core/base/numbers/disjoint_sets.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {
 
-/// Clay beyond the band, as runs along x.
-class ClayRuns {
- public:
-  ClayRuns(const BitVolume& inside, const BitVolume& in_band) : dims_(inside.dims()) {
-    first_.push_back(0);
-    for (std::int64_t z = 0; z < dims_.z; ++z)
-      for (std::int64_t y = 0; y < dims_.y; ++y) {
-        add_row(inside.row(y, z), in_band.row(y, z), inside.words_per_row());
-        first_.push_back(static_cast<std::uint32_t>(runs_.size()));
-      }
-    pieces_.reset(runs_.size());
-    for (std::int64_t z = 0; z < dims_.z; ++z)
-      for (std::int64_t y = 0; y < dims_.y; ++y) {
-        if (y > 0) join_rows(row(y - 1, z), row(y, z));
-        if (z > 0) join_rows(row(y, z - 1), row(y, z));
-      }
-  }
-
-  struct Run {
-    std::int32_t begin, end;
-  };
-  std::size_t row(std::int64_t y, std::int64_t z) const { return static_cast<std::size_t>(z * dims_.y + y); }
-  std::size_t size() const { return runs_.size(); }
-  std::uint32_t piece(std::uint32_t run) { return pieces_.root(run); }
-  /// The run that holds a point of clay beyond the band.
-  std::uint32_t at(const glm::ivec3& p) const {
-    const std::size_t r = row(p.y, p.z);
-    const auto found = std::upper_bound(runs_.begin() + first_[r], runs_.begin() + first_[r + 1], p.x,
-                                        [](std::int32_t x, const Run& run) { return x < run.begin; });
-    return static_cast<std::uint32_t>(found - runs_.begin() - 1);
-  }
-  template <class Visit>
-  void each(const Visit& visit) const {
-    for (std::int64_t z = 0; z < dims_.z; ++z)
-      for (std::int64_t y = 0; y < dims_.y; ++y)
-        for (std::uint32_t i = first_[row(y, z)]; i < first_[row(y, z) + 1]; ++i) visit(i, runs_[i], y, z);
-  }
-
- private:
-  void add_row(const std::uint64_t* inside, const std::uint64_t* in_band, std::int64_t words) {
-    std::uint64_t before = 0;  // the last point of the word before
-    for (std::int64_t w = 0; w < words; ++w) {
-      const std::uint64_t clay = inside[w] & ~in_band[w];
-      for (std::uint64_t turns = clay ^ (clay << 1 | before); turns != 0; turns &= turns - 1) {
-        const auto x = static_cast<std::int32_t>(64 * w + std::countr_zero(turns));
-        if (clay >> (x & 63) & 1u)
-          runs_.push_back({x, static_cast<std::int32_t>(dims_.x)});
-        else
-          runs_.back().end = x;
-      }
-      before = clay >> 63;
-    }
-  }
-  void join_rows(std::size_t a, std::size_t b) {
-    std::uint32_t i = first_[a], j = first_[b];
-    while (i < first_[a + 1] && j < first_[b + 1]) {
-      if (runs_[i].begin < runs_[j].end && runs_[j].begin < runs_[i].end) pieces_.join(i, j);
-      if (runs_[i].end < runs_[j].end)
-        ++i;
-      else
-        ++j;
-    }
-  }
-
-  Dims dims_;
-  std::vector<Run> runs_;
-  std::vector<std::uint32_t> first_;  ///< of each row, and behind the last
-  DisjointSets pieces_;
-};
+constexpr std::int64_t kSlab = BrickMap<std::uint32_t>::kEdge;  ///< slices whose nodes follow each other
 
 constexpr std::uint32_t kLeastIsland = 64;  ///< nodes; fewer in the midst of the other clay are a speck of the cut
 
@@ -117,37 +50,113 @@ std::vector<std::uint32_t> find_islands(const BitVolume& inside, const ContactBa
   return islands;
 }
 
+/// Runs of clay along x in one row, without those of the band.
+void add_runs(const std::uint64_t* inside, const std::uint64_t* in_band, const Dims& dims,
+              std::vector<ClayBeyond::Run>& runs) {
+  const std::int64_t words = (dims.x + 63) / 64;
+  std::uint64_t before = 0;  // the last point of the word before
+  for (std::int64_t w = 0; w < words; ++w) {
+    const std::uint64_t clay = inside[w] & ~in_band[w];
+    for (std::uint64_t turns = clay ^ (clay << 1 | before); turns != 0; turns &= turns - 1) {
+      const auto x = static_cast<std::int32_t>(64 * w + std::countr_zero(turns));
+      if (clay >> (x & 63) & 1u)
+        runs.push_back({x, static_cast<std::int32_t>(dims.x), 0});
+      else
+        runs.back().end = x;
+    }
+    before = clay >> 63;
+  }
+}
+
 }  // namespace
 
-EnvelopeBits label_clay(const BitVolume& inside, const ContactBand& band, const std::vector<ClaySide>& side,
-                        BitVolume* unasked) {
-  BitVolume in_band(inside.dims());
-  EnvelopeBits labels(inside.dims());
-  for (std::uint32_t n = 0; n < band.nodes.size(); ++n) {
-    const glm::ivec3 p = band.point(n);
-    in_band.set(p.x, p.y, p.z, true);
-    if (side[n] == ClaySide::kEnvelope) labels.set(p.x, p.y, p.z, true);
-  }
-  ClayRuns runs(inside, in_band);
-  std::vector<std::array<std::int64_t, 2>> votes(runs.size(), {0, 0});
+ClayBeyond::ClayBeyond(const BitVolume& inside, const ContactBand& band) : inside_(inside), band_(band) {
+  find_runs();
+  find_pieces();
+  touched_.assign(runs_.size(), false);
   const Dims d = inside.dims();
   for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
     each_beside(band.point(n), [&](const glm::ivec3& q) {
       if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= d.x || q.y >= d.y || q.z >= d.z) return;
-      if (inside.get(q.x, q.y, q.z) && !in_band.get(q.x, q.y, q.z))
-        ++votes[runs.piece(runs.at(q))][static_cast<std::size_t>(side[n])];
+      if (!inside.get(q.x, q.y, q.z) || band.at(q) != ContactBand::kNone) return;
+      const std::uint32_t piece = runs_[run_at(q)].piece;
+      touched_[piece] = true;
+      beside_.push_back({n, piece});
     });
-  runs.each([&](std::uint32_t i, const ClayRuns::Run& run, std::int64_t y, std::int64_t z) {
-    const auto& [tablet, envelope] = votes[runs.piece(i)];
-    if (envelope > tablet) labels.set_run(run.begin, run.end, y, z);
-    if (unasked != nullptr && envelope + tablet == 0)
-      for (std::int32_t x = run.begin; x < run.end; ++x) unasked->set(x, y, z, true);
+}
+
+void ClayBeyond::find_runs() {
+  const Dims d = inside_.dims();
+  const auto slabs = static_cast<std::size_t>((d.z + kSlab - 1) / kSlab);
+  std::vector<std::vector<Run>> found(slabs);
+  first_.assign(static_cast<std::size_t>(d.y * d.z) + 1, 0);  // of each row behind itself: how many there are
+  parallel_for(static_cast<std::int64_t>(slabs), 1, [&](std::int64_t s) {
+    std::vector<Run>& runs = found[static_cast<std::size_t>(s)];
+    const std::int64_t from = kSlab * s, end = std::min(from + kSlab, d.z);
+    BitVolume in_band({d.x, d.y, end - from});
+    const auto before = [](const ContactBand::Node& node, std::int64_t z) { return node.z < z; };
+    for (auto node = std::lower_bound(band_.nodes.begin(), band_.nodes.end(), from, before);
+         node != band_.nodes.end() && node->z < end; ++node)
+      in_band.set(node->x, node->y, node->z - from, true);
+    for (std::int64_t z = from; z < end; ++z)
+      for (std::int64_t y = 0; y < d.y; ++y) {
+        const std::size_t already = runs.size();
+        add_runs(inside_.row(y, z), in_band.row(y, z - from), d, runs);
+        first_[row(y, z) + 1] = static_cast<std::uint32_t>(runs.size() - already);
+      }
   });
-  for (const std::uint32_t n : find_islands(inside, band, side, labels)) {
-    const glm::ivec3 p = band.point(n);
+  for (const std::vector<Run>& runs : found) runs_.insert(runs_.end(), runs.begin(), runs.end());
+  for (std::size_t r = 1; r < first_.size(); ++r) first_[r] += first_[r - 1];
+}
+
+void ClayBeyond::find_pieces() {
+  DisjointSets pieces(runs_.size());
+  const auto join_rows = [&](std::size_t a, std::size_t b) {
+    std::uint32_t i = first_[a], j = first_[b];
+    while (i < first_[a + 1] && j < first_[b + 1]) {
+      if (runs_[i].begin < runs_[j].end && runs_[j].begin < runs_[i].end) pieces.join(i, j);
+      if (runs_[i].end < runs_[j].end)
+        ++i;
+      else
+        ++j;
+    }
+  };
+  const Dims d = inside_.dims();
+  for (std::int64_t z = 0; z < d.z; ++z)
+    for (std::int64_t y = 0; y < d.y; ++y) {
+      if (y > 0) join_rows(row(y - 1, z), row(y, z));
+      if (z > 0) join_rows(row(y, z - 1), row(y, z));
+    }
+  for (std::uint32_t i = 0; i < runs_.size(); ++i) runs_[i].piece = pieces.root(i);
+}
+
+std::uint32_t ClayBeyond::run_at(const glm::ivec3& p) const {
+  const std::size_t r = row(p.y, p.z);
+  const auto found = std::upper_bound(runs_.begin() + first_[r], runs_.begin() + first_[r + 1], p.x,
+                                      [](std::int32_t x, const Run& run) { return x < run.begin; });
+  return static_cast<std::uint32_t>(found - runs_.begin() - 1);
+}
+
+bool ClayBeyond::touches(const glm::ivec3& p) const {
+  return band_.at(p) != ContactBand::kNone || touched_[runs_[run_at(p)].piece];
+}
+
+EnvelopeBits ClayBeyond::labels(const std::vector<ClaySide>& side) const {
+  EnvelopeBits labels(inside_.dims());
+  for (std::uint32_t n = 0; n < band_.nodes.size(); ++n)
+    if (side[n] == ClaySide::kEnvelope) labels.set(band_.nodes[n].x, band_.nodes[n].y, band_.nodes[n].z, true);
+  std::vector<std::int32_t> envelope(runs_.size(), 0);  // nodes beside each piece, less those of the tablet
+  for (const auto& [node, piece] : beside_) envelope[piece] += side[node] == ClaySide::kEnvelope ? 1 : -1;
+  const Dims d = inside_.dims();
+  for (std::int64_t z = 0; z < d.z; ++z)
+    for (std::int64_t y = 0; y < d.y; ++y)
+      for (std::uint32_t i = first_[row(y, z)]; i < first_[row(y, z) + 1]; ++i)
+        if (envelope[runs_[i].piece] > 0) labels.set_run(runs_[i].begin, runs_[i].end, y, z);
+  for (const std::uint32_t n : find_islands(inside_, band_, side, labels)) {
+    const glm::ivec3 p = band_.point(n);
     labels.set(p.x, p.y, p.z, side[n] == ClaySide::kTablet);
   }
-  labels.compact(inside);
+  labels.compact(inside_);
   return labels;
 }
 

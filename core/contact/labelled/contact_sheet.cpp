@@ -7,8 +7,10 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "core/base/numbers/disjoint_sets.h"
+#include "core/base/system/parallel.h"
 #include "core/mesh/evidence.h"
 
 namespace dubsar {
@@ -16,6 +18,7 @@ namespace {
 
 constexpr float kSheetReach = 1.8f;  ///< more than the half diagonal of a cell
 constexpr float kSameDistance = 1e-4f;
+constexpr int kSlabSlices = 8;  ///< of the grid, that one thread looks at
 
 /// The place of a triangle nearest to a point, and what it lies on: bit i: corner i has a share in it.
 struct NearestPlace {
@@ -42,15 +45,33 @@ std::uint64_t sheet_side(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }
 
-/// Sides of one triangle, and their ends.
-struct SheetRim {
-  std::unordered_map<std::uint64_t, int> uses;
-  std::unordered_map<std::uint32_t, bool> at_rim;
-  explicit SheetRim(const std::vector<Triangle>& triangles) {
-    for (const Triangle& t : triangles)
-      for (std::size_t i = 0; i < 3; ++i) ++uses[sheet_side(t[i], t[(i + 1) % 3])];
+/// Spreads the bits of an id, so that sums of few of them are equal for the same ids only.
+std::uint64_t spread_id(std::uint32_t id) {
+  std::uint64_t x = (std::uint64_t{id} + 1) * 0x9e3779b97f4a7c15u;
+  x = (x ^ x >> 32) * 0xd6e8feb86659fd93u;
+  return x ^ x >> 32;
+}
+
+/// Sides of one triangle, and their ends: what goes from such a vertex does not come back to it.
+class SheetRim {
+ public:
+  SheetRim(const std::vector<Triangle>& triangles, std::size_t vertices) : at_rim_(vertices, false) {
+    std::vector<std::uint64_t> out_less_in(vertices, 0);
+    const auto each_side = [&](const auto& visit) {
+      for (const Triangle& t : triangles)
+        for (std::size_t i = 0; i < 3; ++i) visit(t[i], t[(i + 1) % 3]);
+    };
+    each_side([&](std::uint32_t a, std::uint32_t b) {
+      out_less_in[a] += spread_id(b);
+      out_less_in[b] -= spread_id(a);
+    });
+    for (std::size_t v = 0; v < vertices; ++v) at_rim_[v] = out_less_in[v] != 0;
+    std::unordered_map<std::uint64_t, int> uses;
+    each_side([&](std::uint32_t a, std::uint32_t b) {
+      if (at_rim_[a] && at_rim_[b]) ++uses[sheet_side(a, b)];
+    });
     for (const auto& [side, count] : uses)
-      if (count == 1) at_rim[static_cast<std::uint32_t>(side >> 32)] = at_rim[static_cast<std::uint32_t>(side)] = true;
+      if (count == 1) sides_.insert(side);
   }
   bool has(const Triangle& t, unsigned corners) const {
     if (corners == 7) return false;
@@ -58,9 +79,36 @@ struct SheetRim {
     std::size_t count = 0;
     for (std::size_t i = 0; i < 3; ++i)
       if (corners >> i & 1u) ids[count++] = t[i];
-    return count == 1 ? at_rim.contains(ids[0]) : uses.at(sheet_side(ids[0], ids[1])) == 1;
+    return count == 1 ? at_rim_[ids[0]] : sides_.contains(sheet_side(ids[0], ids[1]));
   }
+
+ private:
+  std::unordered_set<std::uint64_t> sides_;
+  std::vector<bool> at_rim_;
 };
+
+/// The grid points that a triangle may be near.
+struct SheetBox {
+  glm::ivec3 low, high;
+
+  SheetBox(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c)
+      : low(glm::ceil(glm::min(a, glm::min(b, c)) - kSheetReach)),
+        high(glm::floor(glm::max(a, glm::max(b, c)) + kSheetReach)) {}
+};
+
+/// Triangles by slabs of the grid that they may be near, in order; a triangle may be in several.
+std::vector<std::vector<std::uint32_t>> slabs_of(const std::vector<Triangle>& triangles, std::int64_t slices,
+                                                 const auto& place) {
+  std::vector<std::vector<std::uint32_t>> slabs(static_cast<std::size_t>((slices + kSlabSlices - 1) / kSlabSlices));
+  const auto last = static_cast<int>(slabs.size()) - 1;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
+    const SheetBox box(place(t[0]), place(t[1]), place(t[2]));
+    for (int s = std::max(box.low.z, 0) / kSlabSlices; s <= std::min(std::max(box.high.z, 0) / kSlabSlices, last); ++s)
+      slabs[static_cast<std::size_t>(s)].push_back(i);
+  }
+  return slabs;
+}
 
 }  // namespace
 
@@ -100,14 +148,13 @@ std::vector<float> distances_from_sheet(const ContactBand& band, const Interface
     bool rim = false;
   };
   std::vector<Nearest> nearest(band.nodes.size());
-  const SheetRim rim(sheet.triangles);
-  for (const Triangle& t : sheet.triangles) {
+  const SheetRim rim(sheet.triangles, dual_positions.size() + sheet.added.size());
+  const auto look_around = [&](const Triangle& t, int from, int end) {
     const glm::vec3 a = place(t[0]), b = place(t[1]), c = place(t[2]), n = glm::cross(b - a, c - a);
     const float length = glm::length(n);
-    if (!(length > 0.0f)) continue;
-    const glm::ivec3 low(glm::ceil(glm::min(a, glm::min(b, c)) - kSheetReach)),
-        high(glm::floor(glm::max(a, glm::max(b, c)) + kSheetReach));
-    for (int z = low.z; z <= high.z; ++z)
+    if (!(length > 0.0f)) return;
+    const auto [low, high] = SheetBox(a, b, c);
+    for (int z = std::max(low.z, from); z <= std::min(high.z, end - 1); ++z)
       for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
           const std::uint32_t node = band.at({x, y, z});
@@ -124,7 +171,13 @@ std::vector<float> distances_from_sheet(const ContactBand& band, const Interface
           if (distance > best.distance - kSameDistance && std::abs(cosine) <= std::abs(best.cosine)) continue;
           best = {distance, cosine, rim.has(t, found.corners)};
         }
-  }
+  };
+  const auto slabs = slabs_of(sheet.triangles, band.node_at.dims().z, place);
+  parallel_for(static_cast<std::int64_t>(slabs.size()), 1, [&](std::int64_t s) {
+    const int from = static_cast<int>(s) * kSlabSlices;
+    for (const std::uint32_t i : slabs[static_cast<std::size_t>(s)])
+      look_around(sheet.triangles[i], from, from + kSlabSlices);
+  });
   std::vector<float> distances(nearest.size(), kUnknown);
   for (std::size_t i = 0; i < nearest.size(); ++i)
     if (nearest[i].distance < kFar)

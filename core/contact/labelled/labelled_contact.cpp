@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <map>
 #include <utility>
 
 #include "core/base/system/log.h"
-#include "core/contact/labelled/clay_labels.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/labelled/labelled_mesh.h"
 #include "core/extract/labelled/quad_edges.h"
 #include "core/mesh/evidence.h"
@@ -117,11 +117,13 @@ ContactSheet sheet_of(const ContactQuads& contact, const DividedClay& clay, cons
 /// The evidence of the nearest vertex of the sheet, by cubes of two steps.
 class NearestEvidence {
  public:
-  NearestEvidence(const InterfaceMesh& sheet, const std::vector<std::uint8_t>& evidence)
-      : sheet_(sheet), evidence_(evidence) {
-    for (std::uint32_t i = 0; i < sheet.added.size(); ++i) {
-      const glm::ivec3 c = cube(sheet.added[i]);
-      cubes_[{c.x, c.y, c.z}].push_back(i);
+  NearestEvidence(const ContactSheet& sheet, const Dims& dims)
+      : sheet_(sheet),
+        first_({dims.x / 2 + 1, dims.y / 2 + 1, dims.z / 2 + 1}, kNone),
+        next_(sheet.mesh.added.size(), kNone) {
+    for (std::size_t i = next_.size(); i-- > 0;) {
+      const glm::ivec3 c = cube(sheet.mesh.added[i]);
+      next_[i] = std::exchange(first_.at(c.x, c.y, c.z), static_cast<std::uint32_t>(i));
     }
   }
   std::uint8_t at(const glm::vec3& p) const {
@@ -130,28 +132,39 @@ class NearestEvidence {
     const glm::ivec3 c = cube(p);
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) {
-          const auto cubes = cubes_.find({c.x + x, c.y + y, c.z + z});
-          if (cubes == cubes_.end()) continue;
-          for (const std::uint32_t i : cubes->second) {
-            const float distance = glm::distance(p, sheet_.added[i]);
-            if (distance < least) least = distance, found = evidence_[i];
+        for (int x = -1; x <= 1; ++x)
+          for (std::uint32_t i = first_.get(c.x + x, c.y + y, c.z + z); i != kNone; i = next_[i]) {
+            const float distance = glm::distance(p, sheet_.mesh.added[i]);
+            if (distance < least) least = distance, found = sheet_.evidence[i];
           }
-        }
     return found;
   }
 
  private:
-  static glm::ivec3 cube(const glm::vec3& p) { return glm::ivec3(glm::floor(p * 0.5f)); }
-  const InterfaceMesh& sheet_;
-  const std::vector<std::uint8_t>& evidence_;
-  std::map<std::array<int, 3>, std::vector<std::uint32_t>> cubes_;
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static glm::ivec3 cube(const glm::vec3& p) { return glm::ivec3(glm::floor(glm::max(p, 0.0f) * 0.5f)); }
+  const ContactSheet& sheet_;
+  BrickMap<std::uint32_t> first_;    ///< vertex of each cube
+  std::vector<std::uint32_t> next_;  ///< vertex in the same cube
 };
+
+/// The evidence of the vertices of the contact that are not at the air.
+std::vector<std::uint8_t> evidence_of(const ContactQuads& contact, const ContactSheet& sheet, const Dims& dims) {
+  const NearestEvidence known(sheet, dims);
+  std::vector<std::uint32_t> asked;
+  for (std::uint32_t v = 0; v < contact.at_air.size(); ++v)
+    if (contact.at_air[v] == 0) asked.push_back(v);
+  std::vector<std::uint8_t> evidence(asked.size());
+  parallel_for(static_cast<std::int64_t>(asked.size()), 1 << 10, [&](std::int64_t i) {
+    evidence[static_cast<std::size_t>(i)] = known.at(contact.mesh.positions[asked[static_cast<std::size_t>(i)]]);
+  });
+  return evidence;
+}
 
 /// The faces of the surface belong to whose clay is behind them, so that parts are closed: those of tablet and envelope
 /// all, but where nothing says whose clay it is; those of a cavity that the contact reaches.
 void give_faces_to_labels(SurfaceModel& model, const LabelledMesh& labelled, const EdgeIndex& index,
-                          const PointLabels& labels, const BitVolume& unasked) {
+                          const PointLabels& labels, const ClayBeyond& beyond) {
   const PartitionId tablet = model.partitions.find(PartitionKind::kTablet)->id,
                     inside = model.partitions.find(PartitionKind::kEnvelopeInside)->id;
   const auto kind_of = [&](std::uint32_t q) { return model.partitions[model.quad_partition[q]].kind; };
@@ -173,7 +186,7 @@ void give_faces_to_labels(SurfaceModel& model, const LabelledMesh& labelled, con
       return;
     }
     const bool envelope = kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
-    if ((kind != PartitionKind::kTablet && !envelope) || unasked.get(clay.x, clay.y, clay.z)) return;
+    if ((kind != PartitionKind::kTablet && !envelope) || !beyond.touches(clay)) return;
     if ((own[q] == tablet) != (kind == PartitionKind::kTablet)) model.quad_partition[q] = own[q];
   });
   std::vector<std::uint32_t> reached;
@@ -194,7 +207,7 @@ void give_faces_to_labels(SurfaceModel& model, const LabelledMesh& labelled, con
 
 Result<ContactSheet> sheet_of_cut(const SurfaceModel& model, const DividedClay& clay, const BandDensity& density,
                                   const ShapeOptions& shape, Progress& progress) {
-  const EnvelopeBits envelope = label_clay(model.samples.signs, clay.band, clay.side);
+  const EnvelopeBits envelope = clay.beyond.labels(clay.side);
   const PointLabels labels(model.samples.signs, envelope);
   const ContactEdges edges(labels);
   const std::vector<float> along = crossings_along(clay.band, edges, [&](std::uint32_t n, std::uint32_t m, int axis) {
@@ -219,9 +232,8 @@ Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedC
   keep_whole(clay.band, clay.pores, side);
   for (std::size_t n = 0; n < side.size(); ++n) report.relabelled += side[n] != clay.side[n];
   report.pockets = relabel_faces(model, clay.graph, clay.faces, side);
-  BitVolume unasked(model.samples.dims);
   LabelledSurface& surface = model.labelled.emplace();
-  surface.envelope = label_clay(model.samples.signs, clay.band, side, &unasked);
+  surface.envelope = clay.beyond.labels(side);
   const PointLabels labels(model.samples.signs, surface.envelope);
   const ContactEdges edges(labels);
   surface.contact = quantised(crossings_along(clay.band, edges,
@@ -233,11 +245,9 @@ Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedC
                                               }),
                               bits);
   DUBSAR_ASSIGN(ContactQuads contact, build_contact_quads(model.samples, clay.index, labels, edges, surface.contact));
-  const NearestEvidence known(sheet.mesh, sheet.evidence);
-  for (std::size_t v = 0; v < contact.at_air.size(); ++v)
-    if (contact.at_air[v] == 0) surface.evidence.push_back(known.at(contact.mesh.positions[v]));
+  surface.evidence = evidence_of(contact, sheet, model.samples.dims);
   DUBSAR_ASSIGN(report.mesh, put_labels(std::move(model.mesh), std::move(contact), model.samples, clay.index, labels));
-  give_faces_to_labels(model, report.mesh, clay.index, labels, unasked);
+  give_faces_to_labels(model, report.mesh, clay.index, labels, clay.beyond);
   report.film_vertices = std::ranges::count(surface.evidence, evidence_byte(Evidence::kFilm));
   report.inferred_vertices = static_cast<std::int64_t>(surface.evidence.size()) - report.film_vertices;
   log_debug("contact: {} cells with clay of both, {} points given to the other clay", report.mesh.cells.size(),

@@ -8,6 +8,7 @@
 #include "core/contact/clay_sides.h"
 #include "core/contact/dips.h"
 #include "core/contact/interface_shape.h"
+#include "core/contact/labelled/clay_labels.h"
 #include "core/contact/labelled/contact_sheet.h"
 #include "core/contact/pockets.h"
 #include "core/extract/edge_index.h"
@@ -19,6 +20,7 @@ namespace dubsar {
 /// What is known when the clay has been divided.
 struct DividedClay {
   const ContactBand& band;
+  const ClayBeyond& beyond;
   const Dips& dips;
   const EdgeIndex& index;
   const FaceGraph& graph;

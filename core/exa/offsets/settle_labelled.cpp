@@ -7,6 +7,7 @@
 #include "core/exa/offsets/settle.h"
 #include "core/exa/values/exact.h"
 #include "core/extract/cell_box.h"
+#include "core/extract/extract.h"
 #include "core/extract/piece_moves.h"
 #include "core/parts/labelled_model.h"
 #include "core/relief/curvature/shape_class.h"
@@ -16,14 +17,22 @@ namespace {
 
 constexpr std::int64_t kPlaceGrain = 1 << 14;
 
-/// Where the samples alone have the vertices.
-Result<std::vector<glm::vec3>> places_of_samples(const SurfaceModel& model, Progress& progress) {
+/// Where the samples alone have the vertices of `labelled`.
+Result<std::vector<glm::vec3>> places_of_samples(const SurfaceModel& model, const LabelledMesh& labelled,
+                                                 Progress& progress) {
   const PointLabels labels(model.samples.signs, model.labelled->envelope);
-  const ContactEdges edges(labels);
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
-  DUBSAR_ASSIGN(LabelledMesh base,
-                build_labelled_mesh(model.samples, index, labels, edges, model.labelled->contact, progress));
-  return std::move(base.mesh.positions);
+  DUBSAR_ASSIGN(const ContactQuads contact,
+                build_contact_quads(model.samples, index, labels, ContactEdges(labels), model.labelled->contact));
+  DUBSAR_ASSIGN(const QuadMesh unlabelled, build_quad_mesh(model.samples, index, progress));
+  const std::vector<glm::vec3>& mixed = contact.mesh.positions;
+  if (labelled.first_mixed + mixed.size() != labelled.mesh.positions.size())
+    return fail(ErrorKind::kInternal, "exa: the labelled mesh of {} vertices is not the one of the samples ({})",
+                labelled.mesh.positions.size(), labelled.first_mixed + mixed.size());
+  std::vector<glm::vec3> places(labelled.first_mixed);
+  for (std::uint32_t v = 0; v < labelled.first_mixed; ++v) places[v] = unlabelled.positions[labelled.unlabelled[v]];
+  places.insert(places.end(), mixed.begin(), mixed.end());
+  return places;
 }
 
 /// The place that a file can hold of a vertex that wants to be elsewhere.
@@ -39,11 +48,8 @@ Result<LabelledSettling> settle_labelled(SurfaceModel& model, LabelledMesh label
                                          bool exact_normals, Progress& progress) {
   LabelledSettling report;
   {
-    DUBSAR_ASSIGN(const std::vector<glm::vec3> from, places_of_samples(model, progress));
+    DUBSAR_ASSIGN(const std::vector<glm::vec3> from, places_of_samples(model, labelled, progress));
     std::vector<glm::vec3>& places = labelled.mesh.positions;
-    if (from.size() != places.size())
-      return fail(ErrorKind::kInternal, "exa: the labelled mesh of {} vertices is not the one of the samples ({})",
-                  places.size(), from.size());
     parallel_for(static_cast<std::int64_t>(places.size()), kPlaceGrain, [&](std::int64_t i) {
       const auto v = static_cast<std::size_t>(i);
       places[v] = held_place(from[v], places[v]);

@@ -28,7 +28,7 @@ TEST(ClayLabels, ClayBeyondTheBandIsThatOfTheBandBesideIt) {
   std::vector<ClaySide> side(band.nodes.size());
   for (std::uint32_t n = 0; n < side.size(); ++n)
     side[n] = band.nodes[n].z >= 20 ? ClaySide::kEnvelope : ClaySide::kTablet;
-  const EnvelopeBits envelope = label_clay(inside, band, side);
+  const EnvelopeBits envelope = ClayBeyond(inside, band).labels(side);
   const PointLabels labels(inside, envelope);
   for (std::int64_t z = -1; z <= kHigh; ++z)
     for (std::int64_t y = -1; y <= kHigh; ++y)
