@@ -168,7 +168,7 @@ glm::dvec2 best_centre(const RingSlices& slices, const Dims& dims, glm::dvec2 ce
         const glm::dvec2 to = centre + way;
         if (std::abs(to.x - middle.x) > kRingsCentreReach || std::abs(to.y - middle.y) > kRingsCentreReach) continue;
         const double here = agreement_about(slices, dims, to).together;
-        if (here <= 1.05 * most) continue;  // a tenth of a voxel is no reason to leave the middle
+        if (here <= most + 0.05 * std::abs(most)) continue;  // a tenth of a voxel is no reason to leave the middle
         most = here;
         centre = to;
         moved = true;
