@@ -203,6 +203,25 @@ TEST(TraceContact, TheContactOfAThinFilmRunsThroughNothing) {
   expect_closed_and_mating(made);
 }
 
+TEST(TraceContact, PartsTouchNowhereHoweverMuchIsGluedAndHoweverThinTheFilm) {
+  struct Case {
+    double glued, film;
+    std::uint64_t seed;  // of the sweep over shares of .1 to .6 and films of .2 to 1
+    Dims scan{192, 128, 176};
+  };
+  for (const Case& one : {Case{0.1, 1.0, 391103},
+                          {0.2, 0.2, 391105},
+                          {0.4, 0.35, 391101},
+                          {0.4, 0.7, 391102},
+                          {0.6, 0.3, 391007, {256, 160, 240}}}) {
+    SCOPED_TRACE(fmt::format("seed {}", one.seed));
+    const TracedScan made =
+        traced_scan(phantom::Contact::kFilm, one.film, one.seed, true, true, {one.scan, Detail::kScan, one.glued});
+    ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+    expect_closed_and_mating(made);
+  }
+}
+
 TEST(TraceContact, FilmsAreFollowedAtHalfTheResolution) {
   const TracedScan made = traced_scan(phantom::Contact::kFilm, 0.5, 61126, true, true, kHalved);
   ASSERT_TRUE(made.result.report.detail.resample());
