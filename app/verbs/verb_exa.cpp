@@ -15,7 +15,6 @@
 #include "core/exa/exa_plausible.h"
 #include "core/exa/exa_salvage.h"
 #include "core/exa/offsets/settle.h"
-#include "core/exa/patches/patches.h"
 #include "core/mesh/mesh_check.h"
 #include "core/pipeline/report.h"
 #include "core/volume/formats/import_options.h"
@@ -91,9 +90,8 @@ Result<VerbResult> recompress(const ExaRequest& options, Progress& progress) {
   settle.curvature = before.header.curvature;
   settle.exact_normals = before.header.normals == ExaNormals::kExact;  // somebody asked for them
   SettleStats stats;
-  if (!model.labelled) {  // else it was settled when its parts were made
+  if (model.patches.empty()) {  // else it was settled when its parts were made
     DUBSAR_ASSIGN(stats, settle_for_exa(model, settle, progress));
-    settle_patches(model.patches, model.mesh.vertex_count());
   }
   DUBSAR_ASSIGN(const ExaStats after, write_exa(options.out, model, progress));
   VerbResult result;

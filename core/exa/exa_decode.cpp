@@ -11,7 +11,6 @@
 #include "core/exa/labels/labelled_code.h"
 #include "core/exa/offsets/offsets.h"
 #include "core/exa/offsets/settle.h"
-#include "core/exa/patches/patch_evidence.h"
 #include "core/exa/patches/patches.h"
 #include "core/exa/signs/sign_brick.h"
 #include "core/exa/values/attributes.h"

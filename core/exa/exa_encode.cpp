@@ -8,8 +8,6 @@
 #include "core/exa/labels/labelled_code.h"
 #include "core/exa/offsets/offsets.h"
 #include "core/exa/offsets/settle.h"
-#include "core/exa/patches/patch_evidence.h"
-#include "core/exa/patches/patches.h"
 #include "core/exa/signs/sign_brick.h"
 #include "core/exa/values/attributes.h"
 #include "core/exa/values/exact.h"
@@ -52,7 +50,11 @@ Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
   if (largest(a.shape) > highest_label(ExaLabel::kShape) || largest(a.ao) > highest_label(ExaLabel::kLight) ||
       largest(a.evidence) >= int{kEvidenceCount} || largest(model.quad_partition) > highest_label(ExaLabel::kPartition))
     return fail(ErrorKind::kInternal, "exa: a shape class, ambient light, evidence or partition is out of range");
-  return check_patches(model.patches, model.mesh.vertex_count());
+  const auto carried = [](const ForeignBlock& block) { return block.type == "FILL"; };
+  if (!model.labelled && !model.patches.empty() && std::none_of(model.foreign.begin(), model.foreign.end(), carried))
+    return fail(ErrorKind::kInternal, "exa: {} fill patches found, which no file says; labels close parts",
+                model.patches.size());
+  return {};
 }
 
 template <class T>
@@ -209,11 +211,6 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   }
   add_labels(model, header, blocks, progress);
   if (!a.evidence.empty()) blocks.add("EVID", false, encode_labels(ExaLabel::kEnum, model.mesh, a.evidence, progress));
-  std::vector<FillPatch> contactless;  // of a surface of labels the first patch is the contact, which follows from them
-  if (model.labelled) contactless.assign(model.patches.begin() + 1, model.patches.end());
-  const std::vector<FillPatch>& patches = model.labelled ? contactless : model.patches;
-  if (!patches.empty()) blocks.add("FILL", false, encode_patches(patches, {model.mesh, model.quad_partition}));
-  if (has_patch_evidence(patches)) blocks.add("FEVI", false, encode_patch_evidence(patches));
   std::vector<ExaBlock> all = blocks.take();
   for (const ForeignBlock& block : model.foreign)
     all.push_back({block.type, block.codec, block.flags, block.chunks, block.bytes});

@@ -124,7 +124,7 @@ Result<ExaHeader> ExaReader::header() const {
 Result<std::vector<ForeignBlock>> ExaReader::foreign() const {
   std::vector<ForeignBlock> blocks;
   for (const ExaRow& row : table_.rows) {
-    if (exa_block_known(row.type)) continue;
+    if (exa_block_known(row.type) && row.type != "FILL" && row.type != "FEVI") continue;
     DUBSAR_ASSIGN(std::string bytes, read(row.offset, row.length));
     blocks.push_back({row.type, row.codec, row.flags, row.chunks, std::move(bytes)});
   }

@@ -40,7 +40,7 @@ struct Partition {
   std::string name{};  ///< "tablet", "envelope outside", "object", "fragment 1", "pores and crumbs", ...
   std::string body{};  ///< "tablet", "envelope", ...; empty: the partition bounds a body of its own
   double area_mm2 = 0.0;
-  double volume_mm3 = 0.0;  ///< signed volume enclosed; meaningful when watertight
+  double volume_mm3 = 0.0;  ///< signed volume enclosed; where it ends at another of its body, by cones
   bool watertight = false;
   PartitionKind kind = PartitionKind::kOther;  ///< a table finds out by the name where this is kOther
   /// Of pores and crumbs whose place was looked at (pores_by_body.h): the body that they go with. No file has it.

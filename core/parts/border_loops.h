@@ -8,12 +8,11 @@ namespace dubsar {
 
 /// A directed side of a face at a border: the face's partition is on the left.
 struct BorderEdge {
-  static constexpr std::uint32_t kNoFace = 0xffffffffu;
   std::uint32_t from = 0, to = 0;
-  std::uint32_t face = 0;  ///< on the left; kNoFace for an edge of a fill patch
+  std::uint32_t face = 0;  ///< on the left
   std::uint8_t left = 0;   ///< partition ids
   std::uint8_t right = 0;
-  std::uint32_t beyond = 0;  ///< face on the right; as `face`
+  std::uint32_t beyond = 0;  ///< face on the right
 };
 
 /// Joins edges end to start into loops that visit no vertex twice, each in the sense of its edges; indices

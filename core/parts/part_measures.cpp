@@ -1,9 +1,11 @@
 #include <array>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "core/base/system/parallel.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/surface_model.h"
+#include "core/parts/triangle_soup.h"
 
 namespace dubsar {
 
@@ -14,10 +16,9 @@ struct Sums {
 };
 using SumsOfParts = std::array<Sums, std::size_t{PartitionTable::kHighest} + 1>;
 
-/// Area and signed volume of the triangles of each partition.
-SumsOfParts sum_parts(const TriMesh& mesh) {
+/// Area and signed volume of the triangles of each partition, over cones from `origin`.
+SumsOfParts sum_parts(const TriMesh& mesh, const glm::dvec3& origin) {
   const glm::dvec3 step_mm = mesh.frame.grid_voxel_mm();
-  const glm::dvec3 origin(mesh.positions.front());  // near the surface, so that the volume does not cancel
   SumsOfParts sums = parallel_reduce<SumsOfParts>(
       static_cast<std::int64_t>(mesh.triangles.size()), 1 << 16, {},
       [&](std::int64_t begin, std::int64_t end) {
@@ -43,12 +44,30 @@ SumsOfParts sum_parts(const TriMesh& mesh) {
   return sums;
 }
 
+/// Of the vertices where partitions of one body meet.
+std::optional<glm::dvec3> middle_of_cracks(const SurfaceModel& model) {
+  std::vector<std::uint8_t> own, body;
+  for (const Partition& p : model.partitions) {
+    own.push_back(p.id);
+    body.push_back(model.partitions.body_of(p.id));
+  }
+  const std::vector<std::uint8_t> all = border_vertices(model, own), between = border_vertices(model, body);
+  glm::dvec3 sum(0.0);
+  double count = 0.0;
+  for (std::size_t v = 0; v < all.size(); ++v) {
+    if (all[v] == between[v]) continue;
+    sum += glm::dvec3(model.mesh.positions[v]);
+    count += 1.0;
+  }
+  return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+}
+
 }  // namespace
 
 MeshMeasure measure_mesh(const TriMesh& mesh) {
   if (mesh.positions.empty()) return {};
   MeshMeasure measure;
-  for (const Sums& s : sum_parts(mesh)) {
+  for (const Sums& s : sum_parts(mesh, mesh.positions.front())) {  // near the surface: the volume does not cancel
     measure.area_mm2 += s.area;
     measure.volume_mm3 += s.volume;
   }
@@ -64,7 +83,7 @@ Result<void> measure_partitions(SurfaceModel& model) {
       model.partitions.measured(model.partitions[row].id, 0.0, 0.0, false);
     return {};
   }
-  const SumsOfParts sums = sum_parts(mesh);
+  const SumsOfParts sums = sum_parts(mesh, middle_of_cracks(model).value_or(mesh.positions.front()));
   const std::vector<bool> watertight = watertight_parts(mesh.positions, mesh.triangles, mesh.triangle_partition);
   for (std::size_t row = 0; row < model.partitions.size(); ++row) {
     const PartitionId id = model.partitions[row].id;

@@ -88,7 +88,9 @@ struct MeshMeasure {
 };
 MeshMeasure measure_mesh(const TriMesh& mesh);
 
-/// Fills area, volume and watertight of every partition of the model, each measured alone with its fill patches.
+/// Fills area, volume and watertight of every partition of the model, each measured alone with its fill patches. Where
+/// partitions of one body meet (at cracks of the envelope) they are open, and cones from the middle of these borders
+/// stand for what is missing, so that the volumes of a body's partitions add up to its own.
 /// Cost: one make_tri_mesh and one check_mesh.
 Result<void> measure_partitions(SurfaceModel& model);
 

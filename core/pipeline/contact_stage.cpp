@@ -1,36 +1,14 @@
 #include "core/pipeline/contact_stage.h"
 
-#include <iterator>
-#include <vector>
-
 #include "core/base/system/log.h"
 #include "core/exa/offsets/settle_labelled.h"
-#include "core/exa/patches/patches.h"
 #include "core/filter/resample.h"
-#include "core/parts/fill/holes.h"
 
 namespace dubsar {
 namespace {
 
 /// Standard deviations of clay that straightening leaves: less is no difference of two clays.
 constexpr double kUnevenClay = 2.0;
-
-/// Membranes across the cracks of the envelope, between its outside and its inside, which close each alone: patches
-/// behind the contact.
-Result<void> lay_membranes(SurfaceModel& model, Progress& progress) {
-  HoleOptions beside;
-  beside.keep_patches = true;
-  beside.measure = false;
-  DUBSAR_TRY(fill_holes(model, beside, progress));
-  if (model.patches.size() == 1) return {};
-  std::vector<FillPatch> membranes(std::make_move_iterator(model.patches.begin() + 1),
-                                   std::make_move_iterator(model.patches.end()));
-  settle_patches(membranes, model.mesh.vertex_count());
-  model.patches.resize(1);
-  model.patches.insert(model.patches.end(), std::make_move_iterator(membranes.begin()),
-                       std::make_move_iterator(membranes.end()));
-  return measure_partitions(model);
-}
 
 Result<ContactReport> traced_in_scan(SurfaceModel& model, ContactRules rules, ImportedGrid& imported,
                                      Progress& progress) {
@@ -62,7 +40,6 @@ Result<ClosedModel> close_contact(SurfaceModel model, const ClosingOptions& opti
                   settle_labelled(closed.model, std::move(*contact.labelled), options.settle.curvature,
                                   options.settle.exact_normals, run.progress));
     contact.labelled.reset();
-    DUBSAR_TRY(lay_membranes(closed.model, run.progress));
     log_debug("contact: {} vertices escape, polygons touched at {} cells, and do at {}", settled.escaped,
               settled.touching, settled.left);
     contact.touching = settled.left;

@@ -151,6 +151,10 @@ struct Run {
       model = std::move(closed.model);
       contact = std::move(closed.contact);
     }
+    if (!model.labelled && !model.patches.empty()) {  // parts that touch elsewhere, which labels do not close
+      model.patches.clear();
+      DUBSAR_TRY(measure_partitions(model));
+    }
     separated.holes->triangles = patch_triangles(model);
     return {};
   }

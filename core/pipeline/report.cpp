@@ -118,10 +118,11 @@ json segment_json(const PipelineReport& report) {
                {"small_pieces", report.segment.small_pieces},
                {"cut_length_vox", report.segment.cut_length}};
   if (const auto& holes = report.holes)
-    segment["holes"] = {{"loops", holes->loops},          {"membranes", holes->membranes},
-                        {"unshared", holes->unshared},    {"longest_loop", holes->longest_loop},
-                        {"triangles", holes->triangles},  {"area_vox2", holes->area},
-                        {"watertight", holes->watertight}};
+    segment["holes"] = {{"loops", holes->loops},
+                        {"unshared", holes->unshared},
+                        {"longest_loop", holes->longest_loop},
+                        {"triangles", holes->triangles},
+                        {"area_vox2", holes->area}};
   return segment;
 }
 
@@ -317,8 +318,7 @@ std::string report_text(const PipelineReport& report) {
   if (report.segment.crack_radius > 0)
     text += fmt::format(", cracks up to {} steps closed", 2 * report.segment.crack_radius + 1);
   if (report.segment.nested) text += fmt::format(", cut along {:.0f} steps", report.segment.cut_length);
-  if (report.holes)
-    text += fmt::format(", {} holes and {} cracks filled", report.holes->loops, report.holes->membranes);
+  if (report.holes) text += fmt::format(", {} holes filled", report.holes->loops);
   if (const auto& contact = report.contact; contact && contact->traced)
     text += fmt::format(", contact: {} pockets, {} vertices of films, {} inferred", contact->pockets,
                         contact->film_vertices, contact->inferred_vertices);

@@ -1,7 +1,6 @@
 #include "core/pipeline/surface_stages.h"
 
 #include "core/base/system/log.h"
-#include "core/exa/patches/patches.h"
 #include "core/exa/values/attributes.h"
 #include "core/extract/extract.h"
 #include "core/parts/enclosure.h"
@@ -65,7 +64,6 @@ Result<SeparatedModel> separate(SurfaceModel model, const SegmentOptions& option
       separated.segment.enclosure_refused = true;
       DUBSAR_ASSIGN(separated.holes, fill_holes(separated.model, graph, HoleOptions{}, run.progress));
     }
-    settle_patches(separated.model.patches, separated.model.mesh.vertex_count());
   } else {
     DUBSAR_TRY(measure_partitions(separated.model));
   }

@@ -52,15 +52,10 @@ bool walk_disk(std::span<const std::uint32_t> rims, std::uint64_t most,
 
 /// A patch whose triangles stand in the order of the walk.
 struct DiskPatch {
-  std::vector<std::uint32_t> rims;   ///< vertices of each; 1: one inside, 0: a closed piece
-  std::vector<std::uint32_t> rim;    ///< ids of dual vertices, rim by rim; one twice where rims touch
-  std::vector<DiskChoice> choices;   ///< one a triangle
-  std::vector<Triangle> triangles;   ///< corner < rim.size(): rim, else the vertices of the patch
-  std::vector<std::uint32_t> order;  ///< which vertex of the patch each further vertex was
+  std::vector<std::uint32_t> rims;  ///< vertices of each; 1: one inside, 0: a closed piece
+  std::vector<std::uint32_t> rim;   ///< ids of dual vertices, rim by rim; one twice where rims touch
+  std::vector<Triangle> triangles;  ///< corner < rim.size(): rim, else the vertices of the patch
 };
-/// Nothing when an edge of the patch has three triangles, a vertex of its own lies on a rim, or each triangle of a
-/// closed piece has a dual vertex.
-std::optional<DiskPatch> disk_of(const FillPatch& patch, std::uint32_t vertex_count);
 
 /// A surface without tension within one rim of positions in kPatchStep / 16: the vertices behind the rim.
 std::vector<std::array<std::int64_t, 3>> relaxed_disk(std::span<const std::array<std::int64_t, 3>> rim,

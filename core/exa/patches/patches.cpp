@@ -9,27 +9,22 @@
 
 namespace dubsar {
 namespace {
-constexpr std::uint64_t kMostItemsPerByte =
-    8;  ///< rims, triangles and vertices of a byte; an encoder adds zeros where they are fewer
+constexpr std::uint64_t kMostItemsPerByte = 8;  ///< rims, triangles and vertices of a byte
 
 /// A number of 32 bits, 7 to a byte, lowest first, the top bit of a byte says that more follow.
 class Number {
  public:
-  template <class Coder>
-  std::uint32_t code(Coder& coder, std::uint32_t value) {
+  std::uint32_t read(BitSource& from) {
     std::uint32_t result = 0;
     for (std::size_t byte = 0; byte < 5; ++byte) {
-      const std::uint32_t part = value >> (7 * byte), more = part > 127 ? 128 : 0;
-      const std::uint32_t coded = bytes_[byte].code(coder, (part & 127) | more);
+      const std::uint32_t coded = bytes_[byte].code(from, 0);
       result |= (coded & 127) << (7 * byte);
       if (coded < 128) break;
     }
     return result;
   }
-  template <class Coder>
-  std::int32_t code_signed(Coder& coder, std::int32_t value) {
-    const std::uint32_t coded =
-        code(coder, (static_cast<std::uint32_t>(value) << 1) ^ static_cast<std::uint32_t>(value >> 31));
+  std::int32_t read_signed(BitSource& from) {
+    const std::uint32_t coded = read(from);
     return static_cast<std::int32_t>(coded >> 1) ^ -static_cast<std::int32_t>(coded & 1);
   }
 
@@ -38,21 +33,16 @@ class Number {
 };
 
 /// Vertex ids: one of the last 32 different ones, the next vertex of the patch that was not named yet, or any.
-class IdCode {
+class Ids {
  public:
-  explicit IdCode(std::uint32_t first_extra) : next_extra_(first_extra) {}
-  template <class Coder>
-  std::uint32_t code(Coder& coder, std::uint32_t id) {
-    const auto place = static_cast<std::uint32_t>(std::find(recent_.begin(), recent_.end(), id) - recent_.begin());
-    const std::uint32_t kind = kind_.code(coder, place < recent_.size() ? 0u : id == next_extra_ ? 1u : 2u);
-    if (kind == 0) {
-      id = recent_[place_.code(coder, place)];
-    } else if (kind == 1) {
-      id = next_extra_;
-    } else {
-      id = last_ + static_cast<std::uint32_t>(any_.code_signed(coder, static_cast<std::int32_t>(id - last_)));
-      last_ = id;
-    }
+  explicit Ids(std::uint32_t first_extra) : next_extra_(first_extra) {}
+  std::uint32_t read(BitSource& from) {
+    const std::uint32_t kind = kind_.code(from, 0);
+    std::uint32_t id = next_extra_;
+    if (kind == 0)
+      id = recent_[place_.code(from, 0)];
+    else if (kind != 1)
+      id = last_ = last_ + static_cast<std::uint32_t>(any_.read_signed(from));
     if (id == next_extra_) ++next_extra_;
     const auto at = std::find(recent_.begin(), recent_.end(), id);
     std::rotate(recent_.begin(), at == recent_.end() ? at - 1 : at, at == recent_.end() ? at : at + 1);
@@ -72,7 +62,6 @@ class IdCode {
   Number any_;
 };
 
-std::int64_t steps_of(float v) { return std::llround(static_cast<double>(v) / kPatchStep); }
 float at_steps(std::int64_t k) { return static_cast<float>(static_cast<double>(k) * kPatchStep); }
 using Steps = std::array<std::int64_t, 3>;
 
@@ -81,16 +70,6 @@ Steps fine_steps_of(const glm::vec3& p) {
   Steps k;
   for (int a = 0; a < 3; ++a) k[static_cast<std::size_t>(a)] = std::llround(static_cast<double>(p[a]) * 1024.0);
   return k;
-}
-
-bool is_settled(const FillPatch& patch) {
-  return std::all_of(patch.extra_positions.begin(), patch.extra_positions.end(), [](const glm::vec3& p) {
-    for (int a = 0; a < 3; ++a)
-      if (!(std::abs(p[a]) < 100000.0f) ||
-          std::bit_cast<std::uint32_t>(at_steps(steps_of(p[a]))) != std::bit_cast<std::uint32_t>(p[a]))
-        return false;
-    return true;
-  });
 }
 
 /// The triangles of the walk with the ids of the model.
@@ -118,55 +97,37 @@ std::vector<std::uint32_t> rim_candidates(const PatchSurroundings& around, Parti
   return before;
 }
 
-/// Reads or writes the patches of a model; encoder and decoder are one walk. `most` bounds all counts.
-template <class Coder>
-class PatchCode {
+/// Reads the patches of a model. `most` bounds all counts.
+class PatchReader {
  public:
-  PatchCode(Coder& coder, const PatchSurroundings& around, std::uint64_t most)
-      : coder_(coder),
-        around_(around),
-        vertex_count_(static_cast<std::uint32_t>(around.mesh.vertex_count())),
-        most_(most) {}
+  PatchReader(RangeDecoder& in, const PatchSurroundings& around, std::uint64_t most)
+      : in_{in}, around_(around), vertex_count_(static_cast<std::uint32_t>(around.mesh.vertex_count())), most_(most) {}
 
   /// False: counts that the bytes cannot hold, or no patches.
-  bool code(std::vector<FillPatch>& patches) {
-    const std::uint32_t count = counts_.code(coder_, static_cast<std::uint32_t>(patches.size()));
+  bool read(std::vector<FillPatch>& patches) {
+    const std::uint32_t count = counts_.read(in_);
     if (count > most_ / kMostItemsPerByte) return false;
     patches.resize(count);
     for (FillPatch& patch : patches) {
-      patch.partition = label(patch.partition);
-      patch.reverse_partition = label(patch.reverse_partition);
-      std::optional<DiskPatch> disk;
-      if (Coder::kWrites) disk = compact_disk(patch);
-      const std::uint32_t rims = counts_.code(coder_, disk ? static_cast<std::uint32_t>(disk->rims.size()) : 0u);
-      if (rims == 0 ? !code_loose(patch) : !code_disk(patch, rims, disk ? *disk : DiskPatch())) return false;
+      patch.partition = label();
+      patch.reverse_partition = label();
+      const std::uint32_t rims = counts_.read(in_);
+      if (rims == 0 ? !read_loose(patch) : !read_disk(patch, rims)) return false;
     }
     return true;
   }
 
  private:
   /// A number that is no byte is nobody's, and refused by check_patches().
-  PartitionId label(PartitionId own) {
+  PartitionId label() {
     constexpr std::uint32_t kByte = 255, kNobodys = 254;
-    const std::uint32_t number = counts_.code(coder_, own);
+    const std::uint32_t number = counts_.read(in_);
     return static_cast<PartitionId>(number > kByte ? kNobodys : number);
   }
 
   bool spend(std::uint64_t items) {
     most_ -= std::min(most_, items);
     return most_ > 0;
-  }
-
-  /// Nothing when code_disk() would not give back the same patch.
-  std::optional<DiskPatch> compact_disk(const FillPatch& patch) const {
-    if (!is_settled(patch)) return std::nullopt;
-    std::optional<DiskPatch> disk = disk_of(patch, vertex_count_);
-    if (!disk || named_triangles(disk->rim, disk->triangles, vertex_count_) != patch.triangles) return std::nullopt;
-    const std::vector<Steps> residuals = residuals_of(patch, *disk, expected_of(*disk, patch.extra_positions.size()));
-    for (const Steps& r : residuals)
-      for (const std::int64_t v : r)
-        if (v < -kLargest || v > kLargest) return std::nullopt;
-    return disk;
   }
 
   std::vector<Steps> expected_of(const DiskPatch& disk, std::size_t vertices) const {
@@ -178,19 +139,6 @@ class PatchCode {
     for (Steps& p : expected)
       for (std::int64_t& v : p) v = divided(v + 8, 16);
     return expected;
-  }
-  static std::vector<Steps> residuals_of(const FillPatch& patch, const DiskPatch& disk,
-                                         const std::vector<Steps>& expected) {
-    const DiskNeighbours neighbours(static_cast<std::uint32_t>(disk.rim.size()), expected.size(), disk.triangles);
-    std::vector<Steps> apart(expected.size()), residuals(expected.size());
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      const Steps near = mean_apart(neighbours.of(i), disk.rim.size(), i, apart);
-      for (std::size_t a = 0; a < 3; ++a) {
-        apart[i][a] = steps_of(patch.extra_positions[i][static_cast<int>(a)]) - expected[i][a];
-        residuals[i][a] = apart[i][a] - near[a];
-      }
-    }
-    return residuals;
   }
   /// How far the known neighbours lie from where they were expected; those of the rim lie there.
   static Steps mean_apart(std::span<const std::uint32_t> around, std::size_t rim, std::size_t own,
@@ -209,77 +157,61 @@ class PatchCode {
     return mean;
   }
 
-  bool code_rims(PartitionId partition, std::uint32_t rims, DiskPatch& disk) {
+  bool read_rims(PartitionId partition, std::uint32_t rims, DiskPatch& disk) {
     if (!spend(rims)) return false;
     disk.rims.resize(rims);
     for (std::uint32_t& count : disk.rims) {
-      std::vector<std::uint32_t> rim;
-      if (Coder::kWrites) rim.assign(disk.rim.begin(), disk.rim.begin() + count);
-      count = counts_.code(coder_, count);
-      if (!spend(count)) return false;
-      rim.resize(count);
-      if (!code_rim(partition, rim)) return false;
-      disk.rim.insert(disk.rim.end(), rim.begin(), rim.end());
-      if (Coder::kWrites) disk.rim.erase(disk.rim.begin(), disk.rim.begin() + count);  // comes round
+      count = counts_.read(in_);
+      if (!spend(count) || !read_rim(partition, count, disk.rim)) return false;
     }
     return true;
   }
-  bool code_rim(PartitionId partition, std::vector<std::uint32_t>& rim) {
-    for (std::size_t i = 0; i < rim.size(); ++i) {
-      const std::uint32_t before = i == 0 ? first_ : rim[i - 1];
-      std::vector<std::uint32_t> next;
-      if (i > 0) next = rim_candidates(around_, partition, before);
-      const auto place = static_cast<std::uint32_t>(std::find(next.begin(), next.end(), rim[i]) - next.begin());
-      const std::uint32_t kind =
-          i == 0 ? 3u : way_.code(coder_, place < next.size() ? std::min<std::uint32_t>(place, 3) : 3);
+  bool read_rim(PartitionId partition, std::uint32_t count, std::vector<std::uint32_t>& rim) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t before = i == 0 ? first_ : rim.back(), kind = i == 0 ? 3u : way_.code(in_, 0);
+      std::uint32_t vertex = 0;
       if (kind < 3) {
+        const std::vector<std::uint32_t> next = rim_candidates(around_, partition, before);
         if (kind >= next.size()) return false;
-        rim[i] = next[kind];
+        vertex = next[kind];
       } else {
-        rim[i] =
-            before + static_cast<std::uint32_t>(ids_.code_signed(coder_, static_cast<std::int32_t>(rim[i] - before)));
+        vertex = before + static_cast<std::uint32_t>(ids_.read_signed(in_));
       }
-      if (rim[i] >= vertex_count_) return false;
-      if (i == 0) first_ = rim[0];
+      if (vertex >= vertex_count_) return false;
+      if (i == 0) first_ = vertex;
+      rim.push_back(vertex);
     }
     return true;
   }
 
-  bool code_disk(FillPatch& patch, std::uint32_t rims, DiskPatch disk) {
-    if (!code_rims(patch.partition, rims, disk)) return false;
-    std::size_t done = 0;
+  bool read_disk(FillPatch& patch, std::uint32_t rims) {
+    DiskPatch disk;
+    if (!read_rims(patch.partition, rims, disk)) return false;
     std::uint32_t last = 0;
     const auto choose = [&](const DiskEdge& edge) -> std::optional<DiskChoice> {
       if (!spend(1)) return std::nullopt;
       const DiskNode& here = edge.border[edge.node];
       const std::size_t context = (std::size_t{last} * 8 + edge.triangles_at[here.vertex]) * 8 +
                                   edge.triangles_at[edge.border[here.next].vertex];
-      DiskChoice choice = Coder::kWrites ? disk.choices[done] : DiskChoice();
-      last = steps_[context].code(coder_, static_cast<std::uint32_t>(choice.step));
-      choice.step = static_cast<DiskStep>(last);
-      if (choice.step == DiskStep::kOther) choice.distance = distances_.code_signed(coder_, choice.distance);
-      if (choice.step == DiskStep::kOther && choice.distance == 0) choice.node = nodes_.code(coder_, choice.node);
-      ++done;
+      last = steps_[context].code(in_, 0);
+      DiskChoice choice{static_cast<DiskStep>(last)};
+      if (choice.step == DiskStep::kOther) choice.distance = distances_.read_signed(in_);
+      if (choice.step == DiskStep::kOther && choice.distance == 0) choice.node = nodes_.read(in_);
       return choice;
     };
-    std::vector<Triangle> walked;
-    if (!walk_disk(disk.rims, std::max<std::uint64_t>(most_, 1), choose, walked)) return false;
-    disk.triangles = std::move(walked);
+    if (!walk_disk(disk.rims, std::max<std::uint64_t>(most_, 1), choose, disk.triangles)) return false;
     std::size_t vertices = 0;
     for (const Triangle& t : disk.triangles)
       for (const std::uint32_t v : t)
         vertices = std::max(vertices, v < disk.rim.size() ? std::size_t{0} : v - disk.rim.size() + 1);
     const std::vector<Steps> expected = expected_of(disk, vertices);
-    std::vector<Steps> residuals;
-    if (Coder::kWrites) residuals = residuals_of(patch, disk, expected);
     const DiskNeighbours neighbours(static_cast<std::uint32_t>(disk.rim.size()), vertices, disk.triangles);
     std::vector<Steps> apart(vertices);
     patch.extra_positions.resize(vertices);
-    NearCoder<Coder> near(coder_);
     for (std::size_t i = 0; i < vertices; ++i) {
       apart[i] = mean_apart(neighbours.of(i), disk.rim.size(), i, apart);
       for (std::size_t a = 0; a < 3; ++a) {
-        apart[i][a] += residuals_[a].code(near.coder, Coder::kWrites ? static_cast<std::int32_t>(residuals[i][a]) : 0);
+        apart[i][a] += residuals_[a].code(in_, 0);
         patch.extra_positions[i][static_cast<int>(a)] = at_steps(expected[i][a] + apart[i][a]);
       }
     }
@@ -287,22 +219,20 @@ class PatchCode {
     return true;
   }
 
-  bool code_loose(FillPatch& patch) {
-    const std::uint32_t extra = counts_.code(coder_, static_cast<std::uint32_t>(patch.extra_positions.size()));
-    const std::uint32_t triangles = counts_.code(coder_, static_cast<std::uint32_t>(patch.triangles.size()));
+  bool read_loose(FillPatch& patch) {
+    const std::uint32_t extra = counts_.read(in_), triangles = counts_.read(in_);
     if (!spend(std::uint64_t{extra} + triangles)) return false;
     patch.extra_positions.resize(extra);
     patch.triangles.resize(triangles);
     for (glm::vec3& p : patch.extra_positions)
-      for (int a = 0; a < 3; ++a) p[a] = std::bit_cast<float>(floats_.code(coder_, std::bit_cast<std::uint32_t>(p[a])));
-    IdCode ids(vertex_count_);
+      for (int a = 0; a < 3; ++a) p[a] = std::bit_cast<float>(floats_.read(in_));
+    Ids ids(vertex_count_);
     for (Triangle& t : patch.triangles)
-      for (std::uint32_t& id : t) id = ids.code(coder_, id);
+      for (std::uint32_t& id : t) id = ids.read(in_);
     return true;
   }
 
-  static constexpr std::int64_t kLargest = (1 << 15) - 1;  ///< of a SignedNumber
-  Coder& coder_;
+  BitSource in_;
   const PatchSurroundings& around_;
   std::uint32_t vertex_count_, first_ = 0;
   std::uint64_t most_;
@@ -312,65 +242,12 @@ class PatchCode {
   std::array<SignedNumber, 3> residuals_;
 };
 
-std::uint64_t items_of(const std::vector<FillPatch>& patches) {
-  std::uint64_t items = 4 * patches.size();
-  for (const FillPatch& patch : patches) items += patch.extra_positions.size() + 2 * patch.triangles.size();
-  return items;
-}
-}  // namespace
-
-void settle_patches(std::vector<FillPatch>& patches, std::int64_t vertex_count) {
-  for (FillPatch& patch : patches) {
-    for (glm::vec3& p : patch.extra_positions)
-      for (int a = 0; a < 3; ++a)
-        if (std::abs(p[a]) < 100000.0f) p[a] = at_steps(steps_of(p[a]));
-    const auto disk = disk_of(patch, static_cast<std::uint32_t>(vertex_count));
-    if (!disk) continue;
-    std::vector<glm::vec3> extra;
-    for (const std::uint32_t v : disk->order) extra.push_back(patch.extra_positions[v]);
-    patch.extra_positions = std::move(extra);
-    if (!patch.evidence.empty()) {
-      std::vector<std::uint8_t> evidence;
-      for (const std::uint32_t v : disk->order) evidence.push_back(patch.evidence[v]);
-      patch.evidence = std::move(evidence);
-    }
-    patch.triangles = named_triangles(disk->rim, disk->triangles, static_cast<std::uint32_t>(vertex_count));
-  }
-}
-
-std::vector<std::string> encode_patches(const std::vector<FillPatch>& patches, const PatchSurroundings& around) {
-  std::vector<FillPatch> copy = patches;
-  RangeEncoder out;
-  BitSink sink{out};
-  PatchCode(sink, around, ~std::uint64_t{0}).code(copy);
-  std::string bytes = out.take();
-  bytes.resize(std::max<std::size_t>(bytes.size(), items_of(patches) / kMostItemsPerByte), '\0');
-  return {std::move(bytes)};
-}
-
-Result<std::vector<FillPatch>> decode_patches(std::span<const std::string_view> chunks,
-                                              const PatchSurroundings& around) {
-  if (chunks.size() != 1)
-    return fail(ErrorKind::kBadData, "exa: {} chunks of fill patches found, 1 expected", chunks.size());
-  RangeDecoder in(chunks[0]);
-  BitSource source{in};
-  std::vector<FillPatch> patches;
-  if (!PatchCode(source, around, kMostItemsPerByte * (chunks[0].size() + 8)).code(patches))
-    return fail(ErrorKind::kBadData, "exa: the fill patches are more than {} bytes can hold, or have no border",
-                chunks[0].size());
-  DUBSAR_TRY(check_patches(patches, around.mesh.vertex_count()));
-  return patches;
-}
-
 Result<void> check_patches(const std::vector<FillPatch>& patches, std::int64_t vertex_count) {
   for (const FillPatch& patch : patches) {
     if (patch.partition > PartitionTable::kHighest ||
         (patch.reverse_partition > PartitionTable::kHighest && patch.reverse_partition != PartitionTable::kNone))
       return fail(ErrorKind::kBadData, "exa: a fill patch names partition {} and {}, expected 0..{}", patch.partition,
                   patch.reverse_partition, PartitionTable::kHighest);
-    if (!patch.evidence.empty() && patch.evidence.size() != patch.extra_positions.size())
-      return fail(ErrorKind::kBadData, "exa: a fill patch has {} vertices but evidence for {}",
-                  patch.extra_positions.size(), patch.evidence.size());
     for (const glm::vec3& p : patch.extra_positions)
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
         return fail(ErrorKind::kBadData, "exa: a vertex of a fill patch is not finite");
@@ -379,6 +256,39 @@ Result<void> check_patches(const std::vector<FillPatch>& patches, std::int64_t v
       for (const std::uint32_t v : t)
         if (std::int64_t{v} >= end)
           return fail(ErrorKind::kBadData, "exa: a fill patch names vertex {}, but there are {}", v, end);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<FillPatch>> decode_patches(std::span<const std::string_view> chunks,
+                                              const PatchSurroundings& around) {
+  if (chunks.size() != 1)
+    return fail(ErrorKind::kBadData, "exa: {} chunks of fill patches found, 1 expected", chunks.size());
+  RangeDecoder in(chunks[0]);
+  std::vector<FillPatch> patches;
+  if (!PatchReader(in, around, kMostItemsPerByte * (chunks[0].size() + 8)).read(patches))
+    return fail(ErrorKind::kBadData, "exa: the fill patches are more than {} bytes can hold, or have no border",
+                chunks[0].size());
+  DUBSAR_TRY(check_patches(patches, around.mesh.vertex_count()));
+  return patches;
+}
+
+Result<void> decode_patch_evidence(std::span<const std::string_view> chunks, std::vector<FillPatch>& patches) {
+  if (chunks.size() != 1)
+    return fail(ErrorKind::kBadData, "exa: {} chunks of the patches' evidence found, 1 expected", chunks.size());
+  RangeDecoder in(chunks[0]);
+  BitSource source{in};
+  AdaptiveBit present;
+  std::array<BitTree<2>, 16> models;  // by the two vertices before
+  for (FillPatch& patch : patches) {
+    patch.evidence.resize(source.bit(present, false) ? patch.extra_positions.size() : 0);
+    std::size_t before = 0;
+    for (std::uint8_t& evidence : patch.evidence) {
+      evidence = static_cast<std::uint8_t>(models[before].code(source, 0));
+      before = (before << 2 | evidence) & 15;
+    }
   }
   return {};
 }

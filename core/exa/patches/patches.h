@@ -1,9 +1,8 @@
 #pragma once
-// Fill patches as bytes (docs/exa.md, "Fill patches").
+// Fill patches, which close the parts in files of versions 3 to 6 (docs/exa.md, "Fill patches"): nobody writes them any
+// more; files that are made of such files carry their bytes.
 
-#include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,22 +12,18 @@
 
 namespace dubsar {
 
-/// Rounds the vertices of the patches to kPatchStep and puts the triangles and vertices of disks in the order of
-/// walk_disk(), which is what EXA stores compactly. Twice is the same as once.
-void settle_patches(std::vector<FillPatch>& patches, std::int64_t vertex_count);
-
 /// The surface that the patches close: rims are told by its borders between partitions.
 struct PatchSurroundings {
   const QuadMesh& mesh;
   std::span<const PartitionId> quad_partition;  ///< empty: all 0
 };
 
-/// One chunk. Lossless; compact for settled patches.
-std::vector<std::string> encode_patches(const std::vector<FillPatch>& patches, const PatchSurroundings& around);
-/// kBadData: counts beyond what the bytes can hold, ids of vertices that do not exist, positions that are not finite.
+/// kBadData: not one chunk, counts beyond what the bytes can hold, ids of vertices that do not exist, positions that
+/// are not finite.
 Result<std::vector<FillPatch>> decode_patches(std::span<const std::string_view> chunks,
                                               const PatchSurroundings& around);
-/// The same checks on a model in memory.
-Result<void> check_patches(const std::vector<FillPatch>& patches, std::int64_t vertex_count);
+
+/// Fills the evidence of patches that are there already. kBadData: not one chunk.
+Result<void> decode_patch_evidence(std::span<const std::string_view> chunks, std::vector<FillPatch>& patches);
 
 }  // namespace dubsar

@@ -9,7 +9,6 @@
 
 #include "core/base/system/log.h"
 #include "core/base/system/parallel_gather.h"
-#include "core/mesh/edge_uses.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/face_graph.h"
 #include "core/parts/face_roles.h"
@@ -46,7 +45,6 @@ class HoleFiller {
 
   Result<HoleReport> run() {
     DUBSAR_TRY(fill_between_groups());
-    DUBSAR_TRY(fill_inside_groups());
     for (const FillPatch& patch : model_.patches)
       report_.triangles += static_cast<std::int64_t>(patch.triangles.size());
     return report_;
@@ -155,12 +153,7 @@ class HoleFiller {
       std::vector<BorderEdge> edges;
       for (const BorderEdge& e : all)
         if (group_[e.left] == group && shared.count(key(e.from, e.to)) == 0) edges.push_back(e);
-      if (options_.keep_patches) {
-        for (PartitionId id = 0; id < ids(); ++id)
-          if (group_[id] == group) add_patch_borders(id, edges);
-        cancel_opposite(edges);
-      }
-      const bool tablet = !options_.keep_patches && kind_of(group) == PartitionKind::kTablet;
+      const bool tablet = kind_of(group) == PartitionKind::kTablet;
       std::vector<Task> contacts;
       std::vector<std::uint32_t> faces;  // one beside each of them
       for (const auto& loop : join_loops(edges)) {
@@ -187,55 +180,6 @@ class HoleFiller {
     report_.loops = static_cast<std::int64_t>(tasks.size());
     DUBSAR_ASSIGN(report_.area, fill(tasks));
     return {};
-  }
-
-  /// Where two partitions of one part meet, a membrane closes each of them alone.
-  Result<void> fill_inside_groups() {
-    std::vector<Task> tasks;
-    for (PartitionId id = 0; id < ids(); ++id) {
-      const auto members = std::count(group_.begin(), group_.end(), group_[id]);
-      if (members < 2) continue;
-      const auto partner = [&] {
-        for (PartitionId other = 0; other < ids(); ++other)
-          if (other != id && group_[other] == group_[id]) return other;
-        return PartitionTable::kNone;
-      }();
-      if (members == 2 && partner < id) continue;  // closed together with its partner
-      std::vector<BorderEdge> edges = collect([&](std::uint8_t left, std::uint8_t) { return left == id; });
-      add_patch_borders(id, edges);
-      cancel_opposite(edges);
-      for (const auto& loop : join_loops(edges)) {
-        Task task = make_task(edges, loop);
-        task.partition = id;
-        if (members == 2) task.reverse_partition = partner;
-        tasks.push_back(std::move(task));
-      }
-    }
-    report_.membranes = static_cast<std::int64_t>(tasks.size());
-    DUBSAR_TRY(fill(tasks));
-    return {};
-  }
-
-  /// Border sides of the patches of a partition, in the sense that they have there.
-  void add_patch_borders(std::uint8_t id, std::vector<BorderEdge>& edges) const {
-    for (const FillPatch& patch : model_.patches) {
-      if (patch.partition != id && patch.reverse_partition != id) continue;
-      const std::vector<bool> alone = sides_alone(patch.triangles);
-      for (std::size_t t = 0; t < patch.triangles.size(); ++t)
-        for (std::size_t i = 0; i < 3; ++i) {
-          if (!alone[3 * t + i]) continue;
-          std::uint32_t from = patch.triangles[t][i], to = patch.triangles[t][(i + 1) % 3];
-          if (patch.reverse_partition == id) std::swap(from, to);
-          edges.push_back({from, to, BorderEdge::kNoFace, id, id, BorderEdge::kNoFace});
-        }
-    }
-  }
-
-  /// Sides that a face and a patch of the same partition run along in opposite directions are no border.
-  static void cancel_opposite(std::vector<BorderEdge>& edges) {
-    std::unordered_map<std::uint64_t, int> uses;
-    for (const BorderEdge& e : edges) ++uses[key(e.from, e.to)];
-    std::erase_if(edges, [&](const BorderEdge& e) { return uses[key(e.from, e.to)] == 2; });
   }
 
   /// Fills all holes and appends their patches; returns the area of the patches.
@@ -356,22 +300,10 @@ Result<HoleReport> fill_holes(SurfaceModel& model, const FaceGraph& graph, const
                 "holes: {} partition ids and {} partitions found, expected a segmented model of {} x-quads",
                 model.quad_partition.size(), model.partitions.size(), model.mesh.quads.size());
   DUBSAR_TRY(model.partitions.check_complete(model.quad_partition, "holes", "an x-quad"));
-  if (!options.keep_patches) model.patches.clear();
+  model.patches.clear();
   progress.begin("fill holes", 0, "vertex");
   DUBSAR_ASSIGN(HoleReport report, HoleFiller(model, graph, options, progress).run());
-  if (!options.measure) {
-    progress.end();
-    return report;
-  }
   DUBSAR_TRY(measure_partitions(model));
-  report.watertight = true;
-  for (const Partition& partition : model.partitions) {
-    if (partition.watertight) continue;
-    report.watertight = false;
-    log_warning("holes: partition \"{}\" is not watertight: {}", partition.name,
-                model.samples.closed ? "its borders do not join into loops"
-                                     : "the surface is open at the border of the volume");
-  }
   progress.end();
   return report;
 }

@@ -29,7 +29,6 @@ class Behind {
       : model_(model), graph_(graph), bodies_(bodies), most_(faces), seen_(graph.faces(), false) {}
 
   glm::vec3 continued(const BorderEdge& edge) {
-    if (edge.face == BorderEdge::kNoFace) return glm::vec3(0.0f);
     const glm::vec3 near = mean_normal(edge.face);
     const auto is = [&](PartitionId id, PartitionKind kind) { return model_.partitions.find(id)->kind == kind; };
     if (!is(edge.left, PartitionKind::kTablet) || !is(edge.right, PartitionKind::kEnvelopeInside)) return near;

@@ -61,7 +61,6 @@ TEST_F(ExaFile, MinimalModelWithoutAttributesIsStored) {
   model.attributes = {};
   model.quad_partition.clear();
   model.partitions.clear();
-  model.patches.clear();
   model.provenance.clear();
   const auto stats = write_exa(folder_ / "a.exa", model, progress_);
   ASSERT_TRUE(stats);

@@ -18,7 +18,6 @@ SurfaceModel bare_model_of(const Dims& dims, unsigned seed) {
   model.attributes = {};
   model.quad_partition.clear();
   model.partitions.clear();
-  model.patches.clear();
   model.frame = {};
   model.frame.input_voxel = {{.1, .1, .1}, ""};
   return model;

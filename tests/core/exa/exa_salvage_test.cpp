@@ -46,8 +46,6 @@ TEST_F(ExaFile, ADamagedBlockThatIsNotNeededIsNamedAndLeftOut) {
                                    {"EVID", "evidence"},
                                    {"SHAP", "shape"},
                                    {"NORM", "normals"},
-                                   {"FEVI", "fill_evidence"},
-                                   {"FILL", "fill_patches"},
                                    {"QPAR", "quad_partition"},
                                    {"PART", "partitions"},
                                    {"POSN", "positions"}}) {
@@ -166,8 +164,8 @@ TEST_F(ExaFile, FiniteNonsenseIsTold) {
             "");
   EXPECT_NE(told([](SurfaceModel& m, ExaHeader&) { m.provenance = "no JSON"; }), "");
   EXPECT_NE(told([](SurfaceModel& m, ExaHeader&) { m.frame.input_voxel = {glm::dvec3(1e300), "a file"}; }), "");
-  EXPECT_NE(told([](SurfaceModel& m, ExaHeader&) { m.patches[0].triangles[0] = {3, 3, 3}; }), "");
-  EXPECT_NE(told([](SurfaceModel& m, ExaHeader&) { m.patches[0].extra_positions.push_back(glm::vec3(1e9F)); }), "");
+  EXPECT_NE(told([](SurfaceModel& m, ExaHeader&) { m.patches.push_back({0, 1, {}, {{3, 3, 3}}}); }), "");
+  EXPECT_NE(told([](SurfaceModel& m, ExaHeader&) { m.patches.push_back({0, 1, {glm::vec3(1e9F)}, {}}); }), "");
 }
 
 TEST_F(ExaFile, NothingIsToldOfGoldenFiles) {

@@ -58,12 +58,6 @@ inline SurfaceModel sample_model(const Dims& dims, Kind kind, unsigned seed, boo
                       {1, "envelope \"inside\"", "envelope", 1e-9, -2e5, false}};
   for (PartitionId id = 2; id < PartitionTable::kMost; ++id)
     EXPECT_TRUE(model.partitions.insert({id, fmt::format("fragment {}", id), "", 0.1 * id, 0.0, false}));
-  if (vertices > 3) {
-    model.patches.resize(2);
-    model.patches[0] = {0, 7, {{0.5f, 1.25f, -3.0f}}, {{0, 1, static_cast<std::uint32_t>(vertices)}, {1, 2, 3}}};
-    model.patches[0].evidence = {2};
-    model.patches[1].partition = 3;
-  }
   model.frame.scale = {2.0, 2.0, 2.0};
   model.frame.origin_vox = {0.5, 0.1, -1.0 / 3.0};
   model.frame.input_voxel = {{0.038, 0.0381, 0.04}, "/entry/data@pixel_size"};

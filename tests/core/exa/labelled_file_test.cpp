@@ -45,11 +45,6 @@ SurfaceModel labelled_model(const Labels& volume, unsigned seed, float moved, in
     for (glm::vec3& p : labelled.mesh.positions)
       if (random() % 8 == 0) p += glm::vec3(uniform(random), uniform(random), uniform(random));
   EXPECT_TRUE(settle_labelled(model, std::move(labelled), CurvatureMethod::kFit, false, progress));
-  const auto vertices = static_cast<std::uint32_t>(model.mesh.positions.size());
-  if (seed % 2 == 0 && vertices > 3) {  // a membrane beside the contact
-    model.patches.push_back({1, 0, {{0.5f, 1.25f, -3.0f}}, {{0, 1, vertices}, {1, 2, 3}}});
-    model.patches.back().evidence = {2};
-  }
   return model;
 }
 

@@ -9,12 +9,9 @@
 
 #include "core/exa/exa_file.h"
 #include "core/exa/offsets/settle.h"
-#include "core/exa/patches/patches.h"
 #include "core/extract/extract.h"
-#include "core/parts/fill/holes.h"
 #include "core/relief/curvature/shape_class.h"
 #include "core/relief/smoothing/smooth.h"
-#include "tests/core/exa/ring_patch.h"
 
 namespace {
 using namespace dubsar;
@@ -28,7 +25,6 @@ struct Sample {
   bool smoothed, exact;
   unsigned seed;
   bool evidence = false;
-  bool rings = false;
 };
 
 SurfaceModel make(const Sample& sample) {
@@ -70,23 +66,9 @@ SurfaceModel make(const Sample& sample) {
     model.quad_partition.push_back(model.mesh.positions[quad[0]].x > static_cast<float>(sample.dims.x) / 2 ? 1 : 0);
   model.partitions.insert({0, "tablet", "tablet", 1.5, 2.5, true});
   model.partitions.insert({1, "envelope outside", "envelope", 3.5, -4.5, false});
-  if (sample.closed) {
-    (void)fill_holes(model, HoleOptions{}, progress).value();
-    if (sample.rings)
-      model.patches.push_back(ring_patch(static_cast<std::uint32_t>(model.mesh.vertex_count()), sample.seed));
-    settle_patches(model.patches, model.mesh.vertex_count());
-    model.patches.push_back({0,
-                             255,
-                             {{1.0f / 3.0f, 2.0f, 3.0f}},
-                             {{7, 8, static_cast<std::uint32_t>(model.mesh.positions.size())}, {9, 8, 7}}});
-  }
   if (!sample.evidence) return model;
   for (const glm::vec3& p : model.mesh.positions)
     a.evidence.push_back(static_cast<std::uint8_t>(p.x < 9.5f ? 0 : p.y < 12.0f ? 1 : p.z + uniform() < 14.0 ? 2 : 3));
-  for (std::size_t i = 0; i < model.patches.size(); ++i)
-    if (i % 3 != 1)
-      for (std::size_t v = 0; v < model.patches[i].extra_positions.size(); ++v)
-        model.patches[i].evidence.push_back(static_cast<std::uint8_t>(2 + (v / 5 + i) % 2));
   return model;
 }
 }  // namespace
@@ -97,7 +79,7 @@ int main(int argc, char** argv) {
     return 64;
   }
   for (const Sample& sample : {Sample{"exa6_bricks.exa", {133, 131, 4}, .05, false, 4, false, false, 5},
-                               Sample{"exa6_rings.exa", {29, 31, 27}, .1, true, 4, true, false, 9, true, true}}) {
+                               Sample{"exa6_evidence.exa", {29, 31, 27}, .1, true, 4, true, false, 9, true}}) {
     SilentProgress progress;
     const auto stats = write_exa(std::string(argv[1]) + "/" + sample.name, make(sample), progress);
     if (!stats) {
