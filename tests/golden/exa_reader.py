@@ -1,4 +1,4 @@
-"""A reader of EXA files, written from docs/exa.md alone: `python3 exa_reader.py FILE...` prints the sums of each mesh
+"""A reader of EXA files, by docs/exa.md (of labels only the planes): `python3 exa_reader.py FILE...` prints the sums of each mesh
 and fails when they are not those of the header. Needs numpy. Slow: for tests, not for use."""
 
 import itertools
@@ -10,16 +10,12 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from exa_coding import (LOGISTIC, AdaptiveBit, Decoder, Refiner, SignedNumber, Tree, clamp, curve_at)
+from exa_labels import contact_edges, decode_labels
 
-LOGISTIC = [22, 36, 60, 98, 162, 267, 439, 720, 1179, 1921, 3108, 4971, 7812, 11955, 17625, 24743, 32768, 40793, 47911,
-            53581, 57724, 60565, 62428, 63615, 64357, 64816, 65097, 65269, 65374, 65438, 65476, 65500, 65514]
 STEEP = [4096, 3444, 2896, 2435, 2048, 1722, 1448, 1218, 1024, 861, 724, 609, 512, 431, 362, 304, 256, 215, 181, 152, 128,
          108, 91, 76, 64, 54, 45, 38, 32, 27, 23, 19]
 PHASES = [7, 6, 5, 3, 4, 2, 1]
-
-
-def clamp(v, low, high):
-    return low if v < low else high if v > high else v
 
 
 # Container -----------------------------------------------------------------------------------------------------------
@@ -67,114 +63,6 @@ def read_blocks(data):
         blocks[kind.decode()] = out
     need(data[at:] == b"EXA.END\n", "end mark")
     return blocks
-
-
-# Range coder ---------------------------------------------------------------------------------------------------------
-
-
-class AdaptiveBit:
-    __slots__ = ("p", "seen")
-
-    def __init__(self, p=32768, seen=0):
-        self.p, self.seen = p << 6, seen
-
-    def learn(self, bit):
-        change = ((1 << 22) - 1 if bit else 0) - self.p
-        change *= 131072 // (2 * self.seen + 3)
-        self.p += change // 65536 if change >= 0 else -(-change // 65536)
-        self.seen = min(self.seen + 1, 159)
-
-
-class Decoder:
-    def __init__(self, data):
-        self.data, self.at, self.range, self.code = data, 0, 0xFFFFFFFF, 0
-        for _ in range(4):
-            self.shift()
-
-    def shift(self):
-        self.code = (self.code << 8 | (self.data[self.at] if self.at < len(self.data) else 0)) & 0xFFFFFFFF
-        self.at += 1
-
-    def normalise(self):
-        while self.range < 1 << 24:
-            self.range = self.range << 8 & 0xFFFFFFFF
-            self.shift()
-
-    def bit(self, p):
-        bound = (self.range >> 16) * p
-        one = self.code < bound
-        if one:
-            self.range = bound
-        else:
-            self.code -= bound
-            self.range -= bound
-        self.normalise()
-        return int(one)
-
-    def adaptive(self, model):
-        bit = self.bit(clamp(model.p >> 6, 8, 65528))
-        model.learn(bit)
-        return bit
-
-    def place(self):
-        self.range >>= 16
-        return min(self.code // self.range, 65535)
-
-    def take(self, start, size):
-        self.code -= self.range * start
-        self.range *= size
-        self.normalise()
-
-    def raw(self, count):
-        if count == 0:
-            return 0
-        v = self.place() >> (16 - count)
-        self.take(v << (16 - count), 1 << (16 - count))
-        return v
-
-
-class Tree:
-    def __init__(self, bits):
-        self.bits, self.models = bits, {}
-
-    def get(self, decoder):
-        node = 1
-        for _ in range(self.bits):
-            node = node << 1 | decoder.adaptive(self.models.setdefault(node, AdaptiveBit()))
-        return node - (1 << self.bits)
-
-
-class SignedNumber:
-    def __init__(self):
-        self.length, self.sign, self.second = Tree(4), AdaptiveBit(), [AdaptiveBit() for _ in range(16)]
-
-    def get(self, decoder):
-        length = self.length.get(decoder)
-        if length == 0:
-            return 0
-        negative = decoder.adaptive(self.sign)
-        value = 1
-        if length > 1:
-            value = 2 | decoder.adaptive(self.second[length])
-            value = value << (length - 2) | decoder.raw(length - 2)
-        return -value if negative else value
-
-
-def curve_at(curve, z):
-    i, f = (z + 2048) >> 7, (z + 2048) & 127
-    return (curve[i] * (128 - f) + curve[i + 1] * f) >> 7
-
-
-class Refiner:
-    def __init__(self):
-        self.curve = list(LOGISTIC)
-
-    def predict(self, z):
-        self.j = ((z + 2048) >> 7) + (((z + 2048) & 127) >= 64)
-        return (curve_at(self.curve, z) + curve_at(LOGISTIC, z)) >> 1
-
-    def learn(self, bit):
-        self.curve[self.j] += ((65520 if bit else 16) - self.curve[self.j]) >> 6
 
 
 # Weights -------------------------------------------------------------------------------------------------------------
@@ -427,7 +315,8 @@ def decode_faces(chunks, items, dims, far_sides):
     return joined
 
 
-def decode_offsets(chunks, signs, edges, bits, far_sides):
+def decode_offsets(chunks, signs, edges, bits, far_sides, given=None):
+    """`given`: of edges that are not coded, the offset; -1 of others."""
     dims = signs.shape[::-1]
     s, owner, offsets = signs.transpose(2, 1, 0), by_brick(edges, dims, far_sides), np.zeros(len(edges), dtype=np.uint16)
     n, rest = min(bits, 6), bits - min(bits, 6)
@@ -440,6 +329,10 @@ def decode_offsets(chunks, signs, edges, bits, far_sides):
         sign = lambda p: s[tuple(np.clip(p, low, high))]
         for k in np.flatnonzero(owner == i):
             p, a = edges[k, :3], int(edges[k, 3])
+            if given is not None and given[k] >= 0:
+                offsets[k] = given[k]
+                known[(*p, a)] = (2 * int(offsets[k]) + 1) << 5 >> bits
+                continue
             ua, va = (a + 1) % 3, (a + 2) % 3
             own, inputs = sign(p), []
             for cu, cv in COLUMNS:
@@ -1056,18 +949,34 @@ def loose_patch(decoder, counts, floats, vertices):
     return bits.view(np.float32).reshape(-1, 3), np.array(ids, dtype=np.uint32).reshape(-1, 3).tolist()
 
 
+def read_contact(blocks, head, signs, edges, offsets):
+    """Labels of points, offsets of the contact's edges. The mesh of labels is not built here."""
+    labels = decode_labels(blocks["LABL"], signs, bricks_of(signs.shape[::-1]))
+    contact = contact_edges(labels)
+    if len(contact) != head["contact"]["edges"]:
+        raise ValueError(f"{len(contact)} edges of the contact found, {head['contact']['edges']} expected")
+    of_air = {tuple(e): int(o) for e, o in zip(edges.tolist(), offsets)}
+    tablet = (labels == 1).astype(np.uint8)
+    active = item_order(tablet, False)
+    given = [of_air.get(tuple(e), -1) for e in active.tolist()]
+    found = decode_offsets(blocks["LOFS"], tablet, active, head["offset_bits"], head.get("far_sides", False), given)
+    own = {tuple(e): o for e, o in zip(active.tolist(), found)}
+    return labels, np.array([own[tuple(e)] for e in contact.tolist()], dtype=np.uint16)
+
+
 def read(path):
     """Header, mesh and attributes of a file; raises ValueError where something is wrong."""
     blocks = read_blocks(Path(path).read_bytes())
     head = json.loads(blocks["HEAD"][0])
-    if "contact" in head:
-        raise ValueError("labels, which this reader does not know")
     dims, bits = [int(n) for n in head["dims"]], head["offset_bits"]
     signs = decode_signs(blocks, dims)
     edges, ambiguous = item_order(signs, False), item_order(signs, True)
     far_sides = head.get("far_sides", False)
     joined = decode_faces(blocks["FACE"], ambiguous, dims, far_sides)
     offsets = decode_offsets(blocks["OFFS"], signs, edges, bits, far_sides)
+    if "contact" in head:
+        labels, contact = read_contact(blocks, head, signs, edges, offsets)
+        return {"header": head, "labels": labels, "contact": contact}
     positions, quads, doubled = build_mesh(signs, edges, offsets, ambiguous, joined, bits, head["closed"])
     mesh = Neighbours(len(positions), quads, doubled)
     if "ESCP" in blocks:
@@ -1081,6 +990,8 @@ def read(path):
     for name in ("position_sum", "quad_sum"):
         if result[name] != head[name]:
             raise ValueError(f"{name} {result[name]} found, {head[name]} expected")
+    if (len(positions), len(quads)) != (head["vertices"], head["quads"]):
+        raise ValueError("vertices or x-quads")
     for kind, name, decode, count in (("SHAP", "shape", decode_shape, len(positions)),
                                       ("AMBO", "ao", decode_light, len(positions)),
                                       ("EVID", "evidence", decode_enum, len(positions)),
@@ -1103,10 +1014,11 @@ def read(path):
 def main():
     for path in sys.argv[1:]:
         found = read(path)
-        print(path, len(found["positions"]), "vertices", len(found["quads"]), "x-quads",
+        head = found["header"]
+        print(path, head["vertices"], "vertices", head["quads"], "x-quads",
               *(f"{name} {zlib.crc32(np.ascontiguousarray(found[name]).tobytes()):08x}"
-                for name in ("positions", "quads", "shape", "ao", "quad_partition", "normals", "curvatures", "patches",
-                             "evidence", "patch_evidence")
+                for name in ("labels", "contact", "positions", "quads", "shape", "ao", "quad_partition", "normals",
+                             "curvatures", "patches", "evidence", "patch_evidence")
                 if name in found))
 
 

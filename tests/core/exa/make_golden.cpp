@@ -9,7 +9,10 @@
 
 #include "core/exa/exa_file.h"
 #include "core/exa/offsets/settle.h"
+#include "core/exa/offsets/settle_labelled.h"
+#include "core/extract/edge_index.h"
 #include "core/extract/extract.h"
+#include "core/extract/labelled/labelled_mesh.h"
 #include "core/relief/curvature/shape_class.h"
 #include "core/relief/smoothing/smooth.h"
 
@@ -71,6 +74,55 @@ SurfaceModel make(const Sample& sample) {
     a.evidence.push_back(static_cast<std::uint8_t>(p.x < 9.5f ? 0 : p.y < 12.0f ? 1 : p.z + uniform() < 14.0 ? 2 : 3));
   return model;
 }
+
+/// A tablet in an envelope: two balls with the same middle, half of the way between them air, half contact.
+SurfaceModel make_parts(unsigned seed) {
+  std::mt19937 random(seed);
+  const Dims dims{33, 27, 28};
+  const auto radius = [](std::int64_t x, std::int64_t y, std::int64_t z) {
+    return std::hypot(static_cast<double>(x) - 16.2, static_cast<double>(y) - 13.1, static_cast<double>(z) - 13.4);
+  };
+  const auto inner = [](std::int64_t x, std::int64_t y) {
+    return 6.8 + .7 * std::sin(.9 * static_cast<double>(x)) * std::cos(.8 * static_cast<double>(y));
+  };
+  SurfaceModel model;
+  Volume<float> volume(dims);
+  EnvelopeBits envelope(dims);
+  for (std::int64_t z = 0; z < dims.z; ++z)
+    for (std::int64_t y = 0; y < dims.y; ++y)
+      for (std::int64_t x = 0; x < dims.x; ++x) {
+        const double r = radius(x, y, z), film = std::abs(r - inner(x, y)) - (x > 17 ? 1.1 : 0.0);
+        volume.at(x, y, z) = static_cast<float>(std::min(11.5 - r, film) + .1 * static_cast<double>(random() % 8));
+        envelope.set(x, y, z, r > inner(x, y));
+      }
+  VolumeSource source(volume);
+  SilentProgress progress;
+  model.samples = sample_surface(source, {.isovalue = .125f, .offset_bits = 4, .closed = true}, progress).value();
+  envelope.compact(model.samples.signs);
+  model.labelled.emplace().envelope = envelope;
+  const PointLabels labels(model.samples.signs, model.labelled->envelope);
+  const ContactEdges edges(labels);
+  for (std::size_t i = 0; i < edges.all().size(); ++i)
+    model.labelled->contact.push_back(static_cast<std::uint16_t>(4 + random() % 8));
+  model.mesh = build_quad_mesh(model.samples, progress).value();
+  for (std::size_t v = 0; v < model.mesh.positions.size(); ++v)
+    model.attributes.ao.push_back(static_cast<std::uint8_t>(40 + random() % 4));
+  for (const auto& quad : model.mesh.quads) {
+    const glm::vec3& at = model.mesh.positions[quad[0]];
+    const double r = std::hypot(at.x - 16.2, at.y - 13.1, at.z - 13.4);
+    model.quad_partition.push_back(r > 9.0 ? 1 : r > 6.8 ? 2 : 0);
+  }
+  model.partitions = {{0, "tablet", "", 0.0, 0.0, false},
+                      {1, "envelope outside", "envelope", 0.0, 0.0, false},
+                      {2, "envelope inside", "envelope", 0.0, 0.0, false}};
+  const EdgeIndex index = EdgeIndex::create(model.samples).value();
+  LabelledMesh labelled =
+      build_labelled_mesh(model.samples, index, labels, edges, model.labelled->contact, progress).value();
+  for (std::size_t v = labelled.first_mixed; v < labelled.mesh.positions.size(); ++v)
+    if (!labelled.is_at_air(v)) model.labelled->evidence.push_back(static_cast<std::uint8_t>(2 + (random() % 4 == 0)));
+  settle_labelled(model, std::move(labelled), CurvatureMethod::kFit, false, progress).value();
+  return model;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -78,15 +130,15 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "make_golden FOLDER\n");
     return 64;
   }
-  for (const Sample& sample : {Sample{"exa6_bricks.exa", {133, 131, 4}, .05, false, 4, false, false, 5},
-                               Sample{"exa6_evidence.exa", {29, 31, 27}, .1, true, 4, true, false, 9, true}}) {
+  const Sample sample{"exa7_bricks.exa", {129, 6, 5}, .05, true, 4, true, false, 5, true};
+  for (const auto& [name, model] : {std::pair{sample.name, make(sample)}, {"exa7_labels.exa", make_parts(7)}}) {
     SilentProgress progress;
-    const auto stats = write_exa(std::string(argv[1]) + "/" + sample.name, make(sample), progress);
+    const auto stats = write_exa(std::string(argv[1]) + "/" + name, model, progress);
     if (!stats) {
       fmt::print(stderr, "{}\n", stats.error().message);
       return exit_code(stats.error().kind);
     }
-    fmt::print("{} {} vertices {:.3f} bits a vertex\n", sample.name, stats->vertices, stats->bits_per_vertex);
+    fmt::print("{} {} vertices {:.3f} bits a vertex\n", name, stats->vertices, stats->bits_per_vertex);
   }
   return 0;
 }
