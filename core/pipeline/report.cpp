@@ -201,8 +201,9 @@ json volume_json(const VolumeInfo& info) {
 
 json unmeasured_json(const Unmeasured& unmeasured) {
   if (!unmeasured.left_out()) return nullptr;
-  return {{"share", unmeasured.share},    {"outside", unmeasured.outside}, {"ignored", unmeasured.ignored},
-          {"counts_as", unmeasured.fill}, {"at_rim", unmeasured.at_rim},   {"text", describe(unmeasured)}};
+  return {{"share", unmeasured.share},     {"outside", unmeasured.outside}, {"each_slice", unmeasured.each_slice},
+          {"ignored", unmeasured.ignored}, {"counts_as", unmeasured.fill},  {"at_rim", unmeasured.at_rim},
+          {"text", describe(unmeasured)}};
 }
 
 json bent_rays_json(const BentRays& bent) {

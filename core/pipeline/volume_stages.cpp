@@ -115,6 +115,10 @@ Result<ImportedGrid> import_grid(std::unique_ptr<ImportedVolume> opened, const D
     facts.warnings.push_back(describe(facts.unmeasured));
     log(LogLevel::kWarning, facts.warnings.back());
   }
+  if (const std::vector<std::int64_t> slices = scan->bridged(); !slices.empty()) {
+    facts.warnings.push_back(describe_bridged(slices));
+    log(LogLevel::kWarning, facts.warnings.back());
+  }
   return imported;
 }
 

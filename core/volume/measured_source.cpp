@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/system/parallel.h"
+#include "core/volume/slice_border.h"
 
 namespace dubsar {
 namespace {
@@ -22,6 +23,13 @@ bool has_nonfinite(std::span<const float> values) {
   }
   return false;
 }
+
+std::vector<float> own_padding(std::span<const float> slice, const Dims& dims) {
+  const std::optional<float> value = SliceBorder(slice, dims.x, dims.y).padding();
+  return value ? std::vector<float>{*value} : std::vector<float>{};
+}
+
+constexpr std::uint8_t kCounted = 1, kBridged = 2;
 
 bool is_one_of(float value, const std::vector<float>& values) {
   return std::any_of(values.begin(), values.end(), [&](float other) { return value == other; });
@@ -42,12 +50,20 @@ Result<Unmeasured> MeasuredSource::unmeasured() {
   return *options_.known;
 }
 
+std::vector<std::int64_t> MeasuredSource::bridged() const {
+  std::vector<std::int64_t> slices;
+  for (std::size_t z = 0; z < counted_.size(); ++z)
+    if (counted_[z] == kBridged) slices.push_back(static_cast<std::int64_t>(z));
+  return slices;
+}
+
 /// `between`: NaN and Inf that no end of a row reaches.
 MeasuredSource::Counts MeasuredSource::fill_slice(std::span<float> slice, std::int64_t& between) const {
   const Unmeasured& what = *options_.known;
   const bool nonfinite = options_.may_have_nonfinite && has_nonfinite(slice);
+  const std::vector<float> outside = what.each_slice ? own_padding(slice, dims()) : what.outside;
   const auto is_outside = [&](float v) {
-    return is_one_of(v, what.outside) || is_one_of(v, what.ignored) || (nonfinite && !std::isfinite(v));
+    return is_one_of(v, outside) || is_one_of(v, what.ignored) || (nonfinite && !std::isfinite(v));
   };
   const bool inside_too = nonfinite || !what.ignored.empty();
   const auto width = static_cast<std::size_t>(dims().x);
@@ -73,9 +89,21 @@ MeasuredSource::Counts MeasuredSource::fill_slice(std::span<float> slice, std::i
 Result<void> MeasuredSource::read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) {
   DUBSAR_ASSIGN(const Unmeasured what, unmeasured());
   DUBSAR_TRY(source_->read(z_begin, z_end, out));
-  if (!options_.may_have_nonfinite && what.outside.empty() && what.ignored.empty()) return {};
   const Dims size = dims();
   const auto slices = static_cast<std::size_t>(z_end - z_begin);
+  const std::span<float> slab = out.first(slices * static_cast<std::size_t>(size.slice()));
+  DUBSAR_ASSIGN(std::vector<Bridge> bridges, bridges_of(*source_, z_begin, z_end, slab, [&](float v) {
+                  return is_one_of(v, what.outside) || is_one_of(v, what.ignored);
+                }));
+  for (Bridge& bridge : bridges) {
+    std::int64_t elsewhere = 0;
+    fill_slice(bridge.below_values, elsewhere);
+    fill_slice(bridge.above_values, elsewhere);
+    counted_[static_cast<std::size_t>(bridge.slice)] = kBridged;
+    cross(bridge, slab.subspan(static_cast<std::size_t>((bridge.slice - z_begin) * size.slice()),
+                               static_cast<std::size_t>(size.slice())));
+  }
+  if (!options_.may_have_nonfinite && what.outside.empty() && what.ignored.empty()) return {};
   std::vector<Counts> filled(slices);
   std::vector<std::int64_t> between(slices, 0);
   const std::int64_t grain = std::max<std::int64_t>(1, (1 << 18) / size.slice());
@@ -84,7 +112,9 @@ Result<void> MeasuredSource::read(std::int64_t z_begin, std::int64_t z_end, std:
     filled[static_cast<std::size_t>(k)] = fill_slice(slice, between[static_cast<std::size_t>(k)]);
   });
   for (std::size_t k = 0; k < slices; ++k) {
-    if (std::exchange(counted_[static_cast<std::size_t>(z_begin) + k], std::uint8_t{1}) != 0) continue;
+    std::uint8_t& counted = counted_[static_cast<std::size_t>(z_begin) + k];
+    if (counted != 0) continue;
+    counted = kCounted;
     counts_.outside += filled[k].outside;
     counts_.nonfinite += filled[k].nonfinite;
     between_ += between[k];

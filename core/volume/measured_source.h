@@ -6,13 +6,16 @@
 #include <optional>
 #include <vector>
 
+#include "core/volume/blank_slices.h"
 #include "core/volume/slab_source.h"
 #include "core/volume/unmeasured.h"
 
 namespace dubsar {
 
 /// Replaces voxels that are no measurement (unmeasured.h) by its fill value, which depends on the volume alone, not on
-/// the order or the height of the slabs read.
+/// the order or the height of the slabs read. Up to three slices of nothing else (one value, or NaN) between others are
+/// bridged: each voxel goes straight from one side to the other. So it is where a value is given or found to be no
+/// measurement, or hardly occurs at the border of the slices beside it: the air of a scan without noise is none.
 class MeasuredSource final : public SlabSource {
  public:
   struct Options {
@@ -39,13 +42,15 @@ class MeasuredSource final : public SlabSource {
     std::int64_t all() const noexcept { return outside + nonfinite; }
   };
   const Counts& counts() const noexcept { return counts_; }
+  /// Bridged slices of those read so far, of the grid read, ascending.
+  std::vector<std::int64_t> bridged() const;
 
  private:
   Counts fill_slice(std::span<float> slice, std::int64_t& between) const;
 
   std::unique_ptr<SlabSource> source_;
   Options options_;
-  std::vector<std::uint8_t> counted_;  ///< per slice: 1 once its voxels are in counts_
+  std::vector<std::uint8_t> counted_;  ///< per slice: 1 once its voxels are in counts_, 2 where it was bridged
   Counts counts_;
   std::int64_t between_ = 0;  ///< NaN and Inf with measurements on both sides in their row
 };

@@ -21,6 +21,7 @@ Result<IgnoredValues> parse_ignored(const std::vector<std::string>& texts);
 
 struct Unmeasured {
   std::vector<float> outside;  ///< found: no measurement from either end of a row to the first other value
+  bool each_slice = false;     ///< each slice has another such value, SliceBorder::padding(); `outside` has examples
   std::vector<float> ignored;  ///< given: no measurement anywhere
   bool at_rim = false;         ///< whether `fill` was found at the rim of the field of view
   double share = 0.0;          ///< of the voxels in the slices that were looked at, or of all: NaN and Inf too
@@ -43,10 +44,10 @@ std::string describe(const Unmeasured& unmeasured);
 
 /// Looks for a value outside the field of view in three to seven whole slices, the first and the last among them: an
 /// exact value at their border that is constant up to a convex region (a circle, a rectangle, in each slice its own),
-/// or fills slices, where what begins behind it is air: level there, and the darker of what the region holds. So
-/// neither air that is clipped, nor a background that somebody masked, nor that of a scan without noise is taken for
-/// it. `fill` is found in any case. Memory: one slice and some bytes a pixel. Errors: those of the source, kBadData
-/// where no voxel of these slices is a measurement.
+/// or fills slices (one for all, or another one in each slice), where what begins behind it is air: level there, and
+/// the darker of what the region holds. So neither air that is clipped, nor a background that somebody masked, nor that
+/// of a scan without noise is taken for it. `fill` is found in any case. Memory: one slice and some bytes a pixel.
+/// Errors: those of the source, kBadData where no voxel of these slices is a measurement.
 Result<Unmeasured> find_unmeasured(SlabSource& scan, const IgnoredValues& options);
 
 }  // namespace dubsar

@@ -29,6 +29,8 @@ class ImportedVolume final : public SlabSource {
   Result<Unmeasured> unmeasured() { return source_->unmeasured(); }
   /// Such voxels in the slices read so far; each slice counts once.
   const MeasuredSource::Counts& unmeasured_counts() const noexcept { return source_->counts(); }
+  /// Slices without a measurement that were bridged, of those read so far; of the part that is read.
+  std::vector<std::int64_t> bridged() const { return source_->bridged(); }
 
  private:
   VolumeInfo info_;

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <utility>
 
+#include "core/base/files/file_suffix.h"
 #include "core/base/system/parallel.h"
 #include "core/image_io/tiff_file.h"
 #include "core/volume/formats/flat_reader.h"
@@ -137,6 +138,18 @@ AxisOrder axes_of(int orientation) {
   return axes;
 }
 
+/// Of a file that is called a slice and is none: left out it would bring what lies beyond it nearer.
+Result<void> refuse_slice(const fs::path& path) {
+  DUBSAR_ASSIGN(const InputFile file, InputFile::open(path));
+  const std::string what =
+      file.size() == 0 ? std::string("is empty") : fmt::format("({} bytes) is no TIFF file", file.size());
+  return fail(
+      ErrorKind::kBadData,
+      "import_tiff: {} {}, expected a slice of the volume; copy it again from where it was made, or take it out "
+      "of the folder",
+      path.string(), what);
+}
+
 Result<SliceSeries> files_of(const ImportOptions& options) {
   std::error_code error;
   const bool folder = fs::is_directory(options.path, error);
@@ -148,9 +161,12 @@ Result<SliceSeries> files_of(const ImportOptions& options) {
   for (const auto& entry : entries) {
     const std::string name = entry.path().filename().string();
     std::error_code ignored;
-    if (name.front() != '.' && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0 && entry.is_regular_file(ignored) &&
-        TiffFile::has_signature(entry.path()))
+    if (name.front() == '.' || ::fnmatch(pattern.c_str(), name.c_str(), 0) != 0 || !entry.is_regular_file(ignored))
+      continue;
+    if (TiffFile::has_signature(entry.path()))
       files.push_back(entry.path());
+    else if (const std::string suffix = lower_suffix(name); suffix == ".tif" || suffix == ".tiff")
+      DUBSAR_TRY(refuse_slice(entry.path()));
   }
   if (files.empty())
     return fail(folder ? ErrorKind::kBadData : ErrorKind::kNoInput,

@@ -18,6 +18,7 @@ namespace dubsar {
 namespace {
 
 constexpr double kMostImages = 65535.0;
+constexpr std::int64_t kMostComposite = 7;  ///< channels that ImageJ shows together (CompositeImage.MAX_CHANNELS)
 
 double to_number(std::string_view text, double otherwise) {
   double value = otherwise;
@@ -52,8 +53,12 @@ TiffDescription imagej(std::string_view text) {
   TiffDescription out;
   out.said_by = "ImageJ";
   out.images = count_of(number("images", 1.0));
-  add_several(out, count_of(number("channels", 1.0)), "channels");
-  add_several(out, count_of(number("frames", 1.0)), "time points");
+  const std::int64_t channels = count_of(number("channels", 1.0)), frames = count_of(number("frames", 1.0));
+  // tifffile counts the slices of an array of three axes as channels where it is told no axes.
+  const bool slices = channels > kMostComposite && frames == 1 && count_of(number("slices", 1.0)) == 1;
+  if (slices) out.slices = channels;
+  add_several(out, slices ? 1 : channels, "channels");
+  add_several(out, frames, "time points");
   if (const auto unit = fields.find("unit"); unit != fields.end()) out.unit_mm = mm_per_unit(unit->second);
   out.spacing = number("spacing", 0.0);
   return out;

@@ -346,6 +346,27 @@ TEST_F(ImportWorld, ChannelsAndTimesAreNoSlices) {
   EXPECT_THAT(warnings(*opened), HasSubstr("says 9 slices, 4 are here"));
 }
 
+TEST_F(ImportWorld, AFileThatIsCalledASliceAndIsNoneIsRefused) {
+  TiffFixture tiff;
+  tiff.width = 3;
+  tiff.height = 2;
+  for (const char* name : {"r/a1.tif", "r/a2.tif", "r/a3.tif"}) {
+    fs::create_directories(in(name).parent_path());
+    write_bytes(in(name), tiff.bytes({{1, 2, 3, 4, 5, 6}}));
+  }
+  write_bytes(in("r/notes.txt"), {});
+  write_bytes(in("r/._a1.tif"), {});
+  EXPECT_TRUE(open("r"));
+  for (const char* name : {"r/a2.tif", "r/a3.TIFF"}) {  // within, and behind the last
+    write_bytes(in(name), {});
+    expect_refused("r", ErrorKind::kBadData,
+                   fmt::format("{} is empty, expected a slice", fs::path(name).filename().string()));
+    write_bytes(in(name), "<html></\n");
+    expect_refused("r", ErrorKind::kBadData, "(9 bytes) is no TIFF file");
+    write_bytes(in(name), tiff.bytes({{1, 2, 3, 4, 5, 6}}));
+  }
+}
+
 TEST_F(ImportWorld, AFolderOfTwoSeriesIsRefusedAndAGapIsTold) {
   TiffFixture tiff;
   tiff.width = 3;

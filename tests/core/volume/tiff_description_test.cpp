@@ -2,6 +2,7 @@
 
 #include "core/volume/formats/tiff_description.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,6 +53,22 @@ TEST(TiffDescription, ImageJSaysPagesChannelsAndItsUnit) {
   EXPECT_EQ(said.spacing, -12.5);
   EXPECT_EQ(parse_tiff_description("ImageJ=1\nimages=6\nchannels=3\nslices=2\n").several_of, "3 channels");
   EXPECT_EQ(parse_tiff_description("a scan of mine").images, 1);
+}
+
+// tifffile writes an array of three axes so where it is told no axes; ImageJ shows up to seven channels together.
+TEST(TiffDescription, ManyChannelsWithoutSlicesAreSlices) {
+  const auto said = [](int channels, const char* more) {
+    return parse_tiff_description(
+        fmt::format("ImageJ=1.11a\nimages={0}\nchannels={0}\nhyperstack=true\nmode=grayscale\n{1}", channels, more));
+  };
+  EXPECT_FALSE(said(48, "").several);
+  EXPECT_EQ(said(48, "").slices, 48);
+  EXPECT_EQ(said(48, "").images, 48);
+  EXPECT_FALSE(said(8, "").several);
+  EXPECT_TRUE(said(7, "").several);
+  EXPECT_EQ(said(7, "").several_of, "7 channels");
+  EXPECT_TRUE(said(48, "slices=2\n").several);
+  EXPECT_TRUE(said(48, "frames=2\n").several);
 }
 
 }  // namespace

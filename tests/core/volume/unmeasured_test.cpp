@@ -98,6 +98,44 @@ TEST(Unmeasured, EveryValueLayoutAndTypeIsFound) {
       }
 }
 
+/// Of programs that scale slice by slice: no slice but has its own.
+TEST(Unmeasured, AnotherPadInEachSliceIsFoundAndFilled) {
+  const std::pair<const char*, std::function<float(std::int64_t)>> pads[] = {
+      {"a ramp", [](std::int64_t z) { return -500.0f + 13.0f * static_cast<float>(z); }},
+      {"noise about the air's level",
+       [](std::int64_t z) { return std::round(200.0f + 30.0f * noise_at(900'000u + static_cast<std::uint64_t>(z))); }},
+      {"0 and 1 in turn", [](std::int64_t z) { return static_cast<float>(z / 2 % 2); }},
+  };
+  for (const auto& [name, pad] : pads)
+    for (const Layout& layout : {kLayouts[0], kLayouts[3], kLayouts[4]}) {
+      const auto rounded = [](const Place& p, float noise) { return std::round(ball(p, noise)); };
+      const auto whole = volume_of(rounded);
+      const auto padded =
+          volume_of([&](const Place& p, float noise) { return layout.outside(p) ? pad(p.z) : rounded(p, noise); });
+      MeasuredSource source(std::make_unique<VolumeSource>(padded), {{}, {}, {}, false});
+      const auto found = source.unmeasured();
+      ASSERT_TRUE(found);
+      EXPECT_TRUE(found->each_slice) << name << ", " << layout.name;
+      EXPECT_TRUE(found->at_rim);
+      EXPECT_NEAR(found->fill, 200.0f, 8.0f);
+      EXPECT_THAT(describe(*found), HasSubstr("another value in each slice"));
+      Volume<float> out(kDims);
+      ASSERT_TRUE(source.read(0, kDims.z, out.voxels.span()));
+      std::int64_t wrong = 0, same_by_chance = 0;
+      for (std::int64_t z = 0; z < kDims.z; ++z)
+        for (std::int64_t y = 0; y < kDims.y; ++y)
+          for (std::int64_t x = 0; x < kDims.x; ++x) {
+            const bool outside = layout.outside({x, y, z});
+            if (!outside && out.at(x, y, z) == found->fill && whole.at(x, y, z) == pad(z))
+              ++same_by_chance;  // a measurement at the end of its row that has the slice's value
+            else
+              wrong += out.at(x, y, z) != (outside ? found->fill : whole.at(x, y, z));
+          }
+      EXPECT_EQ(wrong, 0) << name << ", " << layout.name;
+      EXPECT_LT(same_by_chance, 300) << name << ", " << layout.name;
+    }
+}
+
 TEST(Unmeasured, WhatIsOutsideCountsAsAirAndTheRestIsAsItWas) {
   for (const Layout& layout : kLayouts)
     for (const float pad : {-1.0f, kNaN}) {
@@ -154,6 +192,51 @@ TEST(Unmeasured, TrueBackgroundsAreLeftAlone) {
     EXPECT_THAT(found->outside, IsEmpty()) << name;
     EXPECT_FALSE(found->left_out().has_value()) << name;
   }
+}
+
+/// A ramp along z, so that a slice is what lies half way between those beside it.
+TEST(Unmeasured, UpToThreeSlicesWithoutAMeasurementAreBridged) {
+  const auto tower = [](const Place& p, float noise) {
+    return (p.from_axis() < 12.0 ? 900.0f : 200.0f) + 4.0f * static_cast<float>(p.z) +
+           40.0f * noise_at(static_cast<std::uint64_t>(p.y * kDims.x + p.x)) + 0.0f * noise;
+  };
+  const auto whole = volume_of(tower);
+  for (const float blank : {0.0f, kNaN, 5000.0f})
+    for (const std::int64_t count : {1, 3, 4}) {
+      const auto volume =
+          volume_of([&](const Place& p, float n) { return p.z >= 20 && p.z < 20 + count ? blank : tower(p, n); });
+      for (const std::int64_t height : {1, 2, 7, 40}) {
+        MeasuredSource source(std::make_unique<VolumeSource>(volume), {});
+        Volume<float> out(kDims);
+        for (std::int64_t z = 0; z < kDims.z; z += height) {
+          const std::int64_t end = std::min(kDims.z, z + height);
+          ASSERT_TRUE(source.read(z, end, out.voxels.span().subspan(static_cast<std::size_t>(z * kDims.slice()))));
+        }
+        double most = 0.0;
+        for (std::size_t at = 0; at < out.voxels.span().size(); ++at)
+          most = std::max(most, std::abs(double(out.voxels.span()[at]) - double(whole.voxels.span()[at])));
+        if (count <= 3) {
+          EXPECT_LT(most, 1e-3) << blank << ", " << count << " slices, " << height << " at a time";
+          EXPECT_EQ(source.bridged().size(), static_cast<std::size_t>(count));
+          EXPECT_THAT(describe_bridged(source.bridged()), HasSubstr("20"));
+        } else {
+          EXPECT_GT(most, 100.0);
+          EXPECT_THAT(source.bridged(), IsEmpty());
+        }
+      }
+    }
+}
+
+TEST(Unmeasured, AirWithoutNoiseIsNotBridged) {
+  const auto volume = volume_of([](const Place& p, float) {
+    const bool body = p.from_axis() < 12.0 && (p.z < 20 || p.z > 21);
+    return body && p.z > 4 && p.z < 35 ? 900.0f : 0.0f;
+  });
+  MeasuredSource source(std::make_unique<VolumeSource>(volume), {});
+  Volume<float> out(kDims);
+  ASSERT_TRUE(source.read(0, kDims.z, out.voxels.span()));
+  EXPECT_THAT(source.bridged(), IsEmpty());
+  EXPECT_TRUE(std::equal(volume.voxels.span().begin(), volume.voxels.span().end(), out.voxels.span().begin()));
 }
 
 TEST(Unmeasured, ValuesThatAreGivenAreIgnoredEverywhereAndNoneIsLookedFor) {
