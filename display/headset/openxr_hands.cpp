@@ -37,7 +37,10 @@ Result<void> HandInput::make_trackers(XrSession session) {
     if (instance_->tells_hand_source()) info.next = &source;
     info.hand = side == 0 ? XR_HAND_LEFT_EXT : XR_HAND_RIGHT_EXT;
     info.handJointSet = XR_HAND_JOINT_SET_DEFAULT_EXT;
-    DUBSAR_TRY(check(door()(create, session, &info, &trackers_[side]), "following a hand"));
+    const XrResult made = door()(create, session, &info, &trackers_[side]);
+    if (XR_FAILED(made)) trackers_[side] = XR_NULL_HANDLE;
+    // Monado 25 refuses a tracker of seen hands where it has those of controllers only: then there are none.
+    if (made == XR_ERROR_SESSION_LOST || made == XR_ERROR_INSTANCE_LOST) return check(made, "following a hand");
   }
   return {};
 }

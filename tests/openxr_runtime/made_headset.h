@@ -67,6 +67,7 @@ struct MadeManners {
   bool refuses_gl_errors = false;       ///< takes no picture while a GL error of the application waits
   bool hand_source = false;             ///< tells seen hands from those of controllers
   bool hands_from_controllers = false;  ///< closes fingers round a controller that is held
+  bool refuses_trackers = false;        ///< of seen hands, as Monado where it has none
   bool spoils_gl_state = false;
   bool hidden = false;  ///< shows nothing of ours
   MadeLacks lacks;

@@ -22,6 +22,7 @@ struct HandSource {
 XrResult XRAPI_CALL create_tracker(XrSession, const XrHandTrackerCreateInfoEXT* info, XrHandTrackerEXT* out) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
+  if (s.headset.manners.refuses_trackers) return XR_ERROR_FEATURE_UNSUPPORTED;
   s.trackers[s.next_handle] = info->hand == XR_HAND_LEFT_EXT ? 0 : 1;
   s.only_seen_hands = info->next != nullptr && static_cast<const XrBaseInStructure*>(info->next)->type == kSourceInfo;
   ++s.headset.alive.hand_trackers;

@@ -133,6 +133,20 @@ TEST_F(WornSession, TheTabletFollowsASqueezedControllerAndStaysWhereItIsLetGo) {
   EXPECT_EQ(done->view.zoom, 1.0);
 }
 
+TEST_F(WornSession, ARuntimeThatRefusesToFollowSeenHandsHasItsControllers) {
+  made_->hands.controller = made_->manners.refuses_trackers = true;
+  options_.time.longest_s = 3.0;
+  int step = 0;
+  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
+    const std::lock_guard lock(made_->mutex);
+    made_->hands.grip.position = {0.05 + (++step > 60 ? 0.1 : 0.0), -0.2, -0.45};
+    made_->hands.squeeze = step > 30 ? 1.0 : 0.0;
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_NEAR(0.3 * done->view.pan.x, 0.1, 0.5e-3) << "metres";
+  EXPECT_EQ(made_->sessions_ever, 1);
+}
+
 TEST_F(WornSession, AControllerThatIsNotSqueezedMovesNothing) {
   made_->hands.controller = made_->manners.hands_from_controllers = true;
   options_.time.longest_s = 3.0;
@@ -145,6 +159,24 @@ TEST_F(WornSession, AControllerThatIsNotSqueezedMovesNothing) {
   EXPECT_EQ(done->view.pan, glm::dvec2(0.0));
   EXPECT_EQ(done->view.nearer, 0.0);
   EXPECT_LT(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 1e-9);
+}
+
+TEST_F(WornSession, TheWearersQuitEndsItWithinASecond) {
+  options_.time.longest_s = 30.0;
+  using Clock = std::chrono::steady_clock;
+  int step = 0;
+  Clock::time_point quit;
+  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
+    const std::lock_guard lock(made_->mutex);
+    if (++step != 30) return;
+    made_->faults.states = {testing::XrState::kVisible, testing::XrState::kSynchronized, testing::XrState::kStopping,
+                            testing::XrState::kIdle, testing::XrState::kExiting};
+    quit = Clock::now();
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - quit).count(), 1.0);
+  EXPECT_LT(done->frames, 60);
+  EXPECT_EQ(made_->sessions_ever, 1);
 }
 
 TEST_F(WornSession, TheSessionGoesOnWhenTheHeadsetIsLostAndComesBack) {
