@@ -75,7 +75,7 @@ Result<void> CommandTable::run(std::string_view text, Editor& editor) const {
   const Command& command = *find(name);
   if (command.enabled && !command.enabled(editor))
     return fail(ErrorKind::kUsage, "{}: there is nothing to do it to now", name);
-  if (name != "close") editor.desk().leaving = false;
+  if (name != "close") editor.ui().leaving = false;
   return command.run(editor, argument);
 }
 

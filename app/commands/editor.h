@@ -1,5 +1,5 @@
 #pragma once
-// What commands act on: the document with its history, what is open on the desk, and the place they are given in.
+// What commands act on: the document with its history, what is open in the window, and the place they are given in.
 
 #include <cstdint>
 #include <glm/mat3x3.hpp>
@@ -86,8 +86,8 @@ class Editor {
   const Document& document() const noexcept { return history_.now(); }
   const History& history() const noexcept { return history_; }
   const StepFigures& steps() const noexcept { return steps_; }
-  Desk& desk() noexcept { return desk_; }
-  const Desk& desk() const noexcept { return desk_; }
+  UiState& ui() noexcept { return ui_; }
+  const UiState& ui() const noexcept { return ui_; }
   Workplace& place() noexcept { return *place_; }
 
   /// A step of the document.
@@ -113,7 +113,7 @@ class Editor {
   History history_;
   Workplace* place_;
   StepFigures steps_;
-  Desk desk_;
+  UiState ui_;
   std::vector<OtherWork> others_;
   Way way_ = Way::kJump;
   std::uint64_t merge_ = 0;

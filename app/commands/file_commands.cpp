@@ -18,7 +18,7 @@ Command open() {
   Command out = file_command("open", {{"ctrl+o"}}, "arg.surface");
   out.optional = true;
   out.run = [](Editor& editor, const std::string& file) -> Result<void> {
-    Choosing& choosing = editor.desk().choosing;
+    Choosing& choosing = editor.ui().choosing;
     if (file.empty()) {
       choosing.open = !choosing.open;
       return {};
@@ -34,7 +34,7 @@ Command open_folder() {
   Command out = file_command("open_folder", {}, "arg.folder");
   out.values = {".."};
   out.run = [](Editor& editor, const std::string& folder) -> Result<void> {
-    Choosing& choosing = editor.desk().choosing;
+    Choosing& choosing = editor.ui().choosing;
     const fs::path from(choosing.folder.empty() ? editor.place().present_folder() : choosing.folder);
     std::error_code error;
     const fs::path next = fs::weakly_canonical(from / folder, error);
@@ -53,7 +53,7 @@ Command open_recent() {
   out.run = [](Editor& editor, const std::string& number) -> Result<void> {
     DUBSAR_ASSIGN(const double which, number_argument("open_recent", number, 1.0, 10.0));
     DUBSAR_TRY(editor.place().open_recent(static_cast<std::size_t>(which)));
-    editor.desk().choosing.open = false;
+    editor.ui().choosing.open = false;
     return {};
   };
   return out;

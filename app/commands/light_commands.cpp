@@ -14,9 +14,9 @@ Command sweep() {
   out.values = {"15 8", "30 20"};
   out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
-    Desk& desk = editor.desk();
-    if (text.empty() && desk.sweep) {
-      desk.sweep.reset();
+    UiState& ui = editor.ui();
+    if (text.empty() && ui.sweep) {
+      ui.sweep.reset();
       return {};
     }
     LightSweep wanted{kElevationDeg, kPeriodS};
@@ -27,7 +27,7 @@ Command sweep() {
     if (!period.empty()) {
       DUBSAR_ASSIGN(wanted.period_s, number_argument("sweep", period, 2.0, 600.0));  // flicker is below 3 Hz
     }
-    desk.sweep = wanted;
+    ui.sweep = wanted;
     return {};
   };
   return out;

@@ -52,8 +52,8 @@ void add_pin(Editor& editor, const SurfacePin& pin, std::string text) {
   next.notes.push_back(std::move(note));
   give_ids(next);
   editor.change(std::move(next), "note");
-  editor.desk().note = editor.document().notes.size();
-  editor.desk().drawer = "notes";
+  editor.ui().note = editor.document().notes.size();
+  editor.ui().drawer = "notes";
 }
 
 void add_note(Editor& editor, const std::vector<SurfacePin>& pins, std::string text) {
@@ -77,10 +77,10 @@ Command tool() {
               {"f", "profile"}, {"n", "note"},     {"i", "line"},  {"j", "slice"}};
   out.closed = true;
   out.run = [](Editor& editor, const std::string& name) -> Result<void> {
-    Desk& desk = editor.desk();
-    desk.tool = desk.tool == name ? "turn" : name;
-    desk.pending.clear();
-    const Text hint = Text::find("hint." + desk.tool);
+    UiState& ui = editor.ui();
+    ui.tool = ui.tool == name ? "turn" : name;
+    ui.pending.clear();
+    const Text hint = Text::find("hint." + ui.tool);
     if (!hint.empty()) editor.place().say(tr(hint));
     return {};
   };
@@ -90,24 +90,24 @@ Command tool() {
 /// What a click with a tool says.
 Command point() {
   Command out{"point", kMeasures, {}, "arg.place"};
-  out.enabled = [](const Editor& editor) { return editor.desk().tool != "turn"; };
+  out.enabled = [](const Editor& editor) { return editor.ui().tool != "turn"; };
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     std::string rest;
     DUBSAR_ASSIGN(const auto points, points_argument("point", text, 1, rest));
     DUBSAR_ASSIGN(SurfacePin pin, editor.place().pin(points[0]));
-    Desk& desk = editor.desk();
-    if (desk.tool == "slice") {
+    UiState& ui = editor.ui();
+    if (ui.tool == "slice") {
       slice_through(editor, pin);
       return {};
     }
-    desk.pending.push_back(std::move(pin));
-    const auto kind = measure_kind(desk.tool);
-    const std::size_t wanted = kind ? points_of(*kind) : desk.tool == "line" ? 2 : 1;
-    if (desk.pending.size() < wanted) return {};
-    const std::vector<SurfacePin> pins = std::exchange(desk.pending, {});
+    ui.pending.push_back(std::move(pin));
+    const auto kind = measure_kind(ui.tool);
+    const std::size_t wanted = kind ? points_of(*kind) : ui.tool == "line" ? 2 : 1;
+    if (ui.pending.size() < wanted) return {};
+    const std::vector<SurfacePin> pins = std::exchange(ui.pending, {});
     if (kind) return add_measure(editor, *kind, pins, {});
     add_note(editor, pins, {});
-    ++desk.pointing.notes;
+    ++ui.pointing.notes;
     return {};
   };
   return out;
@@ -164,7 +164,7 @@ Command open_note() {
   out.enabled = [](const Editor& editor) { return !editor.document().notes.empty(); };
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     DUBSAR_ASSIGN(const std::size_t at, place_argument("open_note", text, editor.document().notes.size()));
-    editor.desk().note = editor.desk().note == at + 1 ? 0 : at + 1;
+    editor.ui().note = editor.ui().note == at + 1 ? 0 : at + 1;
     return {};
   };
   return out;
@@ -216,7 +216,7 @@ std::vector<Command> mark_commands() {
   out.push_back(on_list("delete_note", kNotes, "arg.number", &Document::notes,
                         [](Editor& editor, Document& next, std::size_t at, const std::string&) {
                           next.notes.erase(next.notes.begin() + static_cast<std::ptrdiff_t>(at));
-                          editor.desk().note = 0;
+                          editor.ui().note = 0;
                         }));
   out.push_back(write("write_notes", kNotes, format_notes));
   out.push_back(write("write_annotations", kNotes, format_annotations));

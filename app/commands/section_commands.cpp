@@ -85,7 +85,7 @@ Command cut_box() {
 Command cut_handles() {
   Command out{"cut_handles", "group.cuts", {{"alt+h"}}};
   out.run = [](Editor& editor, const std::string&) -> Result<void> {
-    bool& box = editor.desk().pointing.cut_box;
+    bool& box = editor.ui().pointing.cut_box;
     box = !box;
     return {};
   };

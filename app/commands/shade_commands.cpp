@@ -65,7 +65,7 @@ Command colours() {
 Command legend() {
   Command out{"legend", "group.style", {{"shift+l"}}};
   out.run = [](Editor& editor, const std::string&) -> Result<void> {
-    editor.desk().legend = !editor.desk().legend;
+    editor.ui().legend = !editor.ui().legend;
     return {};
   };
   return out;

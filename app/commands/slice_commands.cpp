@@ -23,8 +23,8 @@ void change(Editor& editor, const ScanView& scan, std::string_view words) {
 }
 
 void open_drawer(Editor& editor) {
-  editor.desk().drawer = "slices";
-  editor.desk().panels = true;
+  editor.ui().drawer = "slices";
+  editor.ui().panels = true;
 }
 
 /// What a command does to how slices lie.

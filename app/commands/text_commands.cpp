@@ -46,7 +46,7 @@ Command beside(std::string name, double share) {
       ends.push_back(std::move(pin));
     }
     add_text_line(editor, ends, {});
-    ++editor.desk().pointing.notes;
+    ++editor.ui().pointing.notes;
     return {};
   };
   return out;
@@ -201,8 +201,8 @@ void add_text_line(Editor& editor, const std::vector<SurfacePin>& ends, std::str
   give_ids(next);
   const Note line = next.notes.back();
   editor.change(std::move(next), "line of text");
-  editor.desk().note = editor.document().notes.size();
-  editor.desk().drawer = "notes";
+  editor.ui().note = editor.document().notes.size();
+  editor.ui().drawer = "notes";
   warn_of_patch(editor, line);
 }
 

@@ -24,7 +24,7 @@ Command toggle_source() {
     out.keys.push_back({std::string(1, number), std::string(1, number)});
   }
   out.closed = true;
-  out.enabled = [](const Editor& editor) { return editor.desk().help; };
+  out.enabled = [](const Editor& editor) { return editor.ui().help; };
   out.run = [](Editor& editor, const std::string& number) -> Result<void> {
     if (editor.place().toggle_source(static_cast<std::size_t>(number[0] - '1'))) return {};
     return fail(ErrorKind::kUsage, "toggle_source: there is no device {}", number);
@@ -41,9 +41,9 @@ Command drawer() {
               {"shift+n", "notes"}, {"c", "cuts"},  {"shift+s", "slices"}, {"shift+k", "film"}};
   out.closed = true;
   out.run = [](Editor& editor, const std::string& name) -> Result<void> {
-    Desk& desk = editor.desk();
-    desk.drawer = desk.drawer == name && desk.panels ? std::string() : name;
-    desk.panels = true;
+    UiState& ui = editor.ui();
+    ui.drawer = ui.drawer == name && ui.panels ? std::string() : name;
+    ui.panels = true;
     return {};
   };
   return out;
@@ -76,11 +76,11 @@ Command ui_scale() {
   out.values = {"100", "150", "200", "auto"};
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     if (text == "auto") {
-      editor.desk().ui_scale = 0.0;
+      editor.ui().ui_scale = 0.0;
       return {};
     }
     DUBSAR_ASSIGN(const double percent, number_argument("ui_scale", text, 100 * kLeastScale, 100 * kMostScale));
-    editor.desk().ui_scale = 0.01 * percent;
+    editor.ui().ui_scale = 0.01 * percent;
     return {};
   };
   return out;
@@ -104,7 +104,7 @@ Command ui_language() {
 
 Command scale_by(std::string name, double factor, std::vector<DefaultKey> keys) {
   Command out = plain(std::move(name), std::move(keys), [factor](Editor& editor) -> Result<void> {
-    double& scale = editor.desk().ui_scale;
+    double& scale = editor.ui().ui_scale;
     scale = std::clamp((scale > 0 ? scale : 1.0) * factor, kLeastScale, kMostScale);
     return {};
   });
@@ -118,11 +118,11 @@ Command magnify() {
   out.values = {"2", "4", "8"};
   out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
-    double factor = editor.desk().pointing.magnify > 0 ? 0.0 : 3.0;
+    double factor = editor.ui().pointing.magnify > 0 ? 0.0 : 3.0;
     if (!text.empty()) {
       DUBSAR_ASSIGN(factor, number_argument("magnify", text, 2.0, 8.0));
     }
-    editor.desk().pointing.magnify = factor;
+    editor.ui().pointing.magnify = factor;
     return {};
   };
   return out;
@@ -135,13 +135,13 @@ Command beside() {
   out.values = {"linked", "apart", "none"};
   out.closed = out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
-    Desk& desk = editor.desk();
-    if (text == "none" || (text.empty() && desk.beside)) {
-      desk.beside.reset();
+    UiState& ui = editor.ui();
+    if (text == "none" || (text.empty() && ui.beside)) {
+      ui.beside.reset();
       return {};
     }
-    if (!desk.beside) desk.beside = editor.document();
-    desk.linked = text != "apart";
+    if (!ui.beside) ui.beside = editor.document();
+    ui.linked = text != "apart";
     return {};
   };
   return out;
@@ -157,7 +157,7 @@ Command pointer() {
     glm::dvec2 at(0.0);
     DUBSAR_ASSIGN(at.x, number_argument("pointer", text.substr(0, comma), -4.0, 4.0));
     DUBSAR_ASSIGN(at.y, number_argument("pointer", text.substr(std::min(comma + 1, text.size())), -4.0, 4.0));
-    editor.desk().pointing.at = at;
+    editor.ui().pointing.at = at;
     return {};
   };
   return out;
@@ -165,24 +165,24 @@ Command pointer() {
 
 /// What was opened last goes first; a session with work in it asks.
 Result<void> close(Editor& editor) {
-  Desk& desk = editor.desk();
-  if (desk.help) {
-    desk.help = false;
-  } else if (desk.palette) {
-    desk.palette = false;
+  UiState& ui = editor.ui();
+  if (ui.help) {
+    ui.help = false;
+  } else if (ui.palette) {
+    ui.palette = false;
   } else if (editor.place().stop_opening()) {
     // a file that was being read
-  } else if (desk.choosing.open) {
-    desk.choosing.open = false;
-  } else if (desk.pointing.cut_box) {
-    desk.pointing.cut_box = false;
-  } else if (desk.tool != "turn") {
-    desk.tool = "turn";
-    desk.pending.clear();
-  } else if (desk.panels && !desk.drawer.empty()) {
-    desk.drawer.clear();
-  } else if (editor.has_work() && !desk.leaving) {
-    desk.leaving = true;
+  } else if (ui.choosing.open) {
+    ui.choosing.open = false;
+  } else if (ui.pointing.cut_box) {
+    ui.pointing.cut_box = false;
+  } else if (ui.tool != "turn") {
+    ui.tool = "turn";
+    ui.pending.clear();
+  } else if (ui.panels && !ui.drawer.empty()) {
+    ui.drawer.clear();
+  } else if (editor.has_work() && !ui.leaving) {
+    ui.leaving = true;
     editor.place().say(tr("say.end"));
   } else {
     editor.place().end();
@@ -195,7 +195,7 @@ Result<void> close(Editor& editor) {
 std::vector<Command> window_commands() {
   std::vector<Command> out;
   out.push_back(plain("help", {{"f1"}, {"?"}}, [](Editor& editor) -> Result<void> {
-    editor.desk().help = !editor.desk().help;
+    editor.ui().help = !editor.ui().help;
     return {};
   }));
   out.push_back(toggle_source());
@@ -203,7 +203,7 @@ std::vector<Command> window_commands() {
   out.push_back(plain("previous_display", {{"f3"}}, [](Editor& editor) { return editor.place().switch_display(-1); }));
   out.push_back(plain("swap_eyes", {{"x"}}, [](Editor& editor) { return editor.place().swap_eyes(); }));
   out.push_back(plain("panels", {{"tab"}}, [](Editor& editor) -> Result<void> {
-    editor.desk().panels = !editor.desk().panels;
+    editor.ui().panels = !editor.ui().panels;
     return {};
   }));
   out.push_back(drawer());
@@ -218,7 +218,7 @@ std::vector<Command> window_commands() {
   }));
   out.push_back(plain("fullscreen", {{"f11"}}, [](Editor& editor) { return editor.place().toggle_fullscreen(); }));
   out.push_back(plain("palette", {{"ctrl+k"}}, [](Editor& editor) -> Result<void> {
-    editor.desk().palette = !editor.desk().palette;
+    editor.ui().palette = !editor.ui().palette;
     return {};
   }));
   out.push_back(ui_scale());
@@ -227,7 +227,7 @@ std::vector<Command> window_commands() {
   out.push_back(scale_by("letters_smaller", 1.0 / 1.1, {{"ctrl+-"}}));
   out.push_back(magnify());
   out.push_back(plain("cursor", {{"z"}}, [](Editor& editor) -> Result<void> {
-    editor.desk().pointing.cursor = !editor.desk().pointing.cursor;
+    editor.ui().pointing.cursor = !editor.ui().pointing.cursor;
     return {};
   }));
   out.push_back(pointer());

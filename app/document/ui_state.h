@@ -43,7 +43,7 @@ struct Choosing {
 };
 
 /// All of it.
-struct Desk {
+struct UiState {
   bool help = false;
   bool panels = false;
   bool palette = false;  ///< all commands by typing
@@ -59,7 +59,7 @@ struct Desk {
   std::optional<Document> beside;  ///< a state that stands beside the present one
   bool linked = true;              ///< both are seen from the same place, by the same light
   std::size_t note = 0;            ///< which is open, counted from 1; 0: none
-  friend bool operator==(const Desk&, const Desk&) = default;
+  friend bool operator==(const UiState&, const UiState&) = default;
 };
 
 }  // namespace dubsar::app

@@ -42,7 +42,7 @@ void draw_line(const Board& desk) {
   const float right = button_width(tr("top.open")) + button_width(tr("top.undo")) + button_width(tr("top.redo")) +
                       button_width(display) + button_width(desk.state.line.language) + button_width("?");
   ImGui::SameLine(std::max(ImGui::GetCursorPosX() + 8.0f, desk.width - right - 4.0f));
-  button(desk, tr("top.open"), "open", desk.state.desk.choosing.open);
+  button(desk, tr("top.open"), "open", desk.state.ui.choosing.open);
   ImGui::SameLine();
   button(desk, tr("top.undo"), "undo", false, !desk.state.line.undo.empty());
   ImGui::SameLine();
@@ -101,7 +101,7 @@ void draw_tools(const Board& desk) {
   begin("tools", 0.0f, kTopLine + kGap, kToolsWidth,
         row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const std::string name : kTools)
-    row_button(desk, tr_name("tool", name), "tool " + name, desk.state.desk.tool == name);
+    row_button(desk, tr_name("tool", name), "tool " + name, desk.state.ui.tool == name);
   ImGui::End();
 }
 
@@ -124,10 +124,10 @@ void draw_drawers(const Board& desk) {
         row * static_cast<float>(rows.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const Row& each : rows)
     row_button(desk, tr_name("panel", each.name), std::string("drawer ") + each.name,
-               desk.state.desk.drawer == each.name);
+               desk.state.ui.drawer == each.name);
   ImGui::End();
   for (const Row& each : rows) {
-    if (desk.state.desk.drawer != each.name) continue;
+    if (desk.state.ui.drawer != each.name) continue;
     if (each.draw == nullptr) {
       draw_slices(desk);
       continue;
@@ -176,7 +176,7 @@ void draw_panels(const PanelState& state, const KeyTable& keys, float width, flo
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(16.0f, 16.0f));
   ImGui::PushStyleVar(ImGuiStyleVar_ScrollbarSize, kScrollBar);
-  if (state.desk.panels) {
+  if (state.ui.panels) {
     draw_line(desk);
     if (state.files.has_surface) {
       draw_tools(desk);
@@ -185,9 +185,9 @@ void draw_panels(const PanelState& state, const KeyTable& keys, float width, flo
     }
   }
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0f);
-  draw_open_dialogue(state.desk.choosing.open, state.files, width, height, commands);
+  draw_open_dialogue(state.ui.choosing.open, state.files, width, height, commands);
   draw_opening(state.files, width, height, commands);
-  draw_palette(state.desk.palette, keys, width, height, commands);
+  draw_palette(state.ui.palette, keys, width, height, commands);
   ImGui::PopStyleVar();
   ImGui::PopStyleVar(6);
   ImGui::PopStyleColor(12);

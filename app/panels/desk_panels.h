@@ -25,7 +25,7 @@ struct PanelLine {
 struct PanelState {
   PanelLine line{};
   Document document{};
-  Desk desk{};
+  UiState ui{};
   EvidenceShares evidence{};
   SlicePanelState slices{};
   FilesState files{};

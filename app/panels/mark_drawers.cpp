@@ -117,7 +117,7 @@ void draw_notes(const Board& desk) {
                 length = ImGui::GetID("length");
   for (std::size_t i = 0; i < desk.state.document.notes.size(); ++i) {
     const Note& note = desk.state.document.notes[i];
-    const bool open = desk.state.desk.note == i + 1;
+    const bool open = desk.state.ui.note == i + 1;
     ImGui::PushID(static_cast<int>(i));
     const std::string title = fmt::format("{}  {}", note.label.empty() ? std::to_string(i + 1) : note.label,
                                           open ? std::string() : note.text.substr(0, note.text.find('\n')));
@@ -130,7 +130,7 @@ void draw_notes(const Board& desk) {
       button(desk, tr("note.look"), fmt::format("go_to_note {}", i + 1), false);
       next_in_row(button_width(tr("note.delete")));
       button(desk, tr("note.delete"), fmt::format("delete_note {}", i + 1), false);
-      const int placed = static_cast<int>(desk.state.desk.pointing.notes);
+      const int placed = static_cast<int>(desk.state.ui.pointing.notes);
       // What is typed after the click that placed a note, or after a letter was pressed, is its text.
       const bool fresh = kept.GetInt(answered) != placed;
       const int behind = kept.GetInt(lettered);  // a letter, once it stands there
@@ -156,7 +156,7 @@ void draw_notes(const Board& desk) {
 }
 
 void draw_cuts(const Board& desk) {
-  button(desk, tr("cut.box"), "cut_handles", desk.state.desk.pointing.cut_box);
+  button(desk, tr("cut.box"), "cut_handles", desk.state.ui.pointing.cut_box);
   button(desk, tr("cut.across"), "cut_here", false);
   const bool any = !desk.state.document.clips.empty();
   button(desk, tr("cut.deeper"), "cut_deeper", false, any);

@@ -132,7 +132,7 @@ void Overlay::draw_in_panel_letters(const std::function<void()>& draw) const {
 }
 
 void Overlay::draw_all(float width, float height) {
-  const bool around = text_.panels && text_.panels->desk.panels;
+  const bool around = text_.panels && text_.panels->ui.panels;
   const auto legend = [&] {
     const float bottom = height - (around ? 120.0f : 24.0f);
     draw_legend(*text_.legend, around && bottom - kLegendTall < kToolsEnd ? kLegendBeside : kLegendLeft, bottom);
@@ -188,9 +188,9 @@ std::string typed_by(const InputEvent& event) {
 
 bool Overlay::take_key(const InputEvent& event, const glm::dvec2& layout) {
   ImGuiIO& io = ImGui::GetIO();
-  const Desk& desk = text_.panels->desk;
-  const bool palette = desk.palette || desk.choosing.open;  // what lists things takes the keys
-  const bool placed = std::exchange(notes_answered_, desk.pointing.notes) != desk.pointing.notes;
+  const UiState& ui = text_.panels->ui;
+  const bool palette = ui.palette || ui.choosing.open;  // what lists things takes the keys
+  const bool placed = std::exchange(notes_answered_, ui.pointing.notes) != ui.pointing.notes;
   if (palette ? !io.WantTextInput : placed)
     for (int pass = 0; pass < 3; ++pass) frame(layout, scale_);  // the field that waits for its text takes the keys
   if (!palette && !io.WantTextInput) return false;

@@ -124,7 +124,7 @@ void draw_head(const Board& desk) {
     button(desk, tr_name("which", name), std::string("slice_large ") + name, active);
     ImGui::SameLine();
   }
-  button(desk, tr("slice.here"), "tool slice", desk.state.desk.tool == "slice");
+  button(desk, tr("slice.here"), "tool slice", desk.state.ui.tool == "slice");
   ImGui::SameLine();
   button(desk, tr("slice.turn"), "slice_turn", false);
   ImGui::SameLine();

@@ -155,11 +155,11 @@ glm::dvec3 middle_of(const std::vector<glm::dvec3>& path_mm) {
   return path_mm.back();
 }
 
-Marks marks_of(const Document& document, const Desk& desk, const PartLooks& parts, LabelFont& font, double scale) {
+Marks marks_of(const Document& document, const UiState& ui, const PartLooks& parts, LabelFont& font, double scale) {
   Marker marker(document, parts, font);
   for (std::size_t i = 0; i < document.measures.size(); ++i) mark(marker, document.measures[i], i + 1);
   for (std::size_t i = 0; i < document.notes.size(); ++i) mark(marker, document.notes[i]);
-  for (const SurfacePin& pin : desk.pending)
+  for (const SurfacePin& pin : ui.pending)
     if (const auto offset = marker.offset(pin.part)) marker.dot(pin.at_mm + *offset, kMeasuredColor);
   return marker.take(scale);
 }

@@ -14,7 +14,8 @@ inline constexpr double kMarkPlate = 0.94;
 
 /// Those of parts that are shown, where their parts stand. `font` outlives the pictures of them. `scale` times as large
 /// as on a plain monitor.
-Marks marks_of(const Document& document, const Desk& desk, const PartLooks& parts, LabelFont& font, double scale = 1.0);
+Marks marks_of(const Document& document, const UiState& ui, const PartLooks& parts, LabelFont& font,
+               double scale = 1.0);
 
 /// The middle of a path, by its length.
 glm::dvec3 middle_of(const std::vector<glm::dvec3>& path_mm);

@@ -23,7 +23,7 @@ CutBox BoxTool::box() {
 }
 
 std::optional<BoxPicture> BoxTool::picture() {
-  if (!scene_.desk().pointing.cut_box || !scene_.has_surface() || hidden_) return std::nullopt;
+  if (!scene_.ui().pointing.cut_box || !scene_.has_surface() || hidden_) return std::nullopt;
   BoxPicture out = box().picture(Sight::of(*scene_.stage));
   const auto touches = held_ ? std::optional(held_->side()) : touched(out);
   if (touches) out.handles[*touches].touched = true;

@@ -16,7 +16,7 @@ constexpr double kClick = 0.006;  // heights of the window: what moves less is a
 
 bool ClickTool::take(InputEvent& event) {
   const bool left = event.kind == EventKind::kButton && event.button == MouseButton::kLeft;
-  if (left && event.down && event.at && event.modifiers == 0 && scene_.desk().tool != "turn") {
+  if (left && event.down && event.at && event.modifiers == 0 && scene_.ui().tool != "turn") {
     press_ = event;
     return true;
   }

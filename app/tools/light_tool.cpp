@@ -48,7 +48,7 @@ bool LightTool::take(InputEvent& event) {
 
 void LightTool::contribute(Shown& shown) {
   ViewState& view = shown.view;
-  const std::optional<LightSweep>& sweep = scene_.desk().sweep;
+  const std::optional<LightSweep>& sweep = scene_.ui().sweep;
   if (!sweep) {
     sweep_since_ = -1;
   } else {

@@ -7,19 +7,19 @@ namespace dubsar::app {
 
 void MarksTool::contribute(Shown& shown) {
   const auto marks = [&](const Document& document, const PartLooks& parts) {
-    return marks_of(document, scene_.desk(), parts, *font_, scene_.window.letters);
+    return marks_of(document, scene_.ui(), parts, *font_, scene_.window.letters);
   };
   shown.marks = marks(*scene_.seen, shown.parts);
-  if (!scene_.desk().beside) return;
-  const Document& kept = *scene_.desk().beside;  // the state that was put beside the present one
-  auto beside = std::make_shared<Shown>(scene_.shown(kept, scene_.desk().linked ? shown.view : view_of(kept)));
+  if (!scene_.ui().beside) return;
+  const Document& kept = *scene_.ui().beside;  // the state that was put beside the present one
+  auto beside = std::make_shared<Shown>(scene_.shown(kept, scene_.ui().linked ? shown.view : view_of(kept)));
   beside->marks = marks(kept, beside->parts);
   shown.beside = std::move(beside);
 }
 
 void MarksTool::point() {
   OverlayMarks marks;
-  const Pointing& seen = scene_.desk().pointing;
+  const Pointing& seen = scene_.ui().pointing;
   if ((seen.magnify > 0 || seen.cursor) && seen.at) {
     const auto place = scene_.stage->place_at(*seen.at);
     if (!place) log_warning("{}", place.error().message);

@@ -15,7 +15,7 @@ class SlicesTool final : public Tool {
   /// Another surface: its scan, if there is one.
   void begin(std::optional<ScanLink> link);
   void end() { pictures_.reset(); }
-  bool shown() const { return scene_.desk().panels && scene_.desk().drawer == "slices" && scene_.has_surface(); }
+  bool shown() const { return scene_.ui().panels && scene_.ui().drawer == "slices" && scene_.has_surface(); }
   /// The surface stands to the right of the window's middle while slices are beside it.
   void update(TimestampNs now) override;
   void contribute(Shown& shown) override;

@@ -53,7 +53,7 @@ struct ToolScene {
 
   bool has_surface() const noexcept { return !mesh->triangles.empty(); }
   const Document& document() const noexcept { return editor->document(); }
-  const Desk& desk() const noexcept { return editor->desk(); }
+  const UiState& ui() const noexcept { return editor->ui(); }
   /// What the stage shows of a document in a view.
   Shown shown(const Document& of, const ViewState& view) const { return shown_of(of, view, *options, stage->box_mm()); }
   /// What is under this place of the window, with parts where they stand.

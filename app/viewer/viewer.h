@@ -76,7 +76,7 @@ class Viewer final {
   const TriMesh& mesh() const noexcept { return *scene_.mesh; }
   const Stage& stage() const noexcept { return *stage_; }
   const Document& document() const noexcept { return editor_->document(); }
-  const Desk& desk() const noexcept { return editor_->desk(); }
+  const UiState& ui() const noexcept { return editor_->ui(); }
   /// What whoever leads the session wants; of nobody: nothing.
   const Guidance& guidance() const noexcept { return present_.led.guidance; }
   const KeyTable& keys() const noexcept { return *said_.keys; }

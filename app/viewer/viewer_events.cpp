@@ -40,7 +40,7 @@ void Viewer::use(Queued next, TimestampNs now) {
     for (const std::string& command : overlay_->take_commands()) run(command, kKeySteps + scene_.window.presses);
     return;
   }
-  if (event.at && event.kind != EventKind::kKey) editor_->desk().pointing.at = event.at;
+  if (event.at && event.kind != EventKind::kKey) editor_->ui().pointing.at = event.at;
   const auto tools = tools_->all();
   const auto took = std::find_if(tools.begin(), tools.end(), [&](Tool* const tool) { return tool->take(event); });
   if (took == tools.end()) return use_key(event, false);

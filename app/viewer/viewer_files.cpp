@@ -33,7 +33,7 @@ std::optional<Result<void>> Viewer::put_read() {
 void Viewer::drop(const std::vector<std::string>& files) {
   if (given_.loader == nullptr || options_.guide != nullptr || files.empty()) return;
   if (const auto done = files_.list.open({files.begin(), files.end()}); !done) return say(done.error().message);
-  editor_->desk().choosing.open = false;
+  editor_->ui().choosing.open = false;
 }
 
 /// Until the first file is there, what is known of it stands in its place.
@@ -61,7 +61,7 @@ void Viewer::take_surface() {
     return steps_.fail_with(why);  // what the session was begun for
   log_warning("{}", why.message);
   say(why.message);
-  if (!has_surface() && !given_.loader->go_on()) editor_->desk().choosing.open = true;
+  if (!has_surface() && !given_.loader->go_on()) editor_->ui().choosing.open = true;
 }
 
 std::string Viewer::title() const { return files_.list.title(has_surface() ? options_.around.title : std::string()); }
@@ -98,17 +98,17 @@ Result<void> Viewer::put(OpenedSurface surface) {
     found.style = style;
     found.light = light;
   }
-  Desk desk = editor_->desk();
-  desk.pending.clear();
-  desk.beside.reset();
-  desk.note = 0;
-  desk.leaving = false;
-  desk.sweep.reset();
+  UiState ui = editor_->ui();
+  ui.pending.clear();
+  ui.beside.reset();
+  ui.note = 0;
+  ui.leaving = false;
+  ui.sweep.reset();
   editor_ = files_.kept.begin(
       std::move(found), std::move(files_.opened->session),
       [this](History history, Document opened) { return make_editor(std::move(history), std::move(opened)); });
   scene_.editor = editor_.get();
-  editor_->desk() = std::move(desk);
+  editor_->ui() = std::move(ui);
   begin_surface();
   for (Tool* const tool : tools_->all()) tool->let_go();
   known_.film.stop();

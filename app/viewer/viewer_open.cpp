@@ -123,10 +123,10 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   begin_surface();
   DUBSAR_ASSIGN(overlay_, Overlay::create(*said_.keys));
   files_.first = opening();
-  Desk& desk = editor_->desk();
-  desk.panels = displays_->panels_wanted();
-  desk.ui_scale = options_.around.scale;
-  desk.choosing.open = given_.loader != nullptr && !has_surface() && !files_.first;
+  UiState& ui = editor_->ui();
+  ui.panels = displays_->panels_wanted();
+  ui.ui_scale = options_.around.scale;
+  ui.choosing.open = given_.loader != nullptr && !has_surface() && !files_.first;
   input_.steering->set_home(home_of(document()));
   DUBSAR_TRY(start_sources());
   if (GlfwWindow* const window = given_.presenter.window()) {

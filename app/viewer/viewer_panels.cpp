@@ -18,8 +18,8 @@ constexpr TimestampNs kBallNs = kSecondNs;  // after the light has moved
 constexpr TimestampNs kNoticeNs = 6 * kSecondNs, kFadeNs = kSecondNs, kHelpRefreshNs = kSecondNs / 2;
 
 /// What somebody said, else the desktop; 0: neither, what suits the window.
-double ui_scale(const Desk& desk, const GlfwWindow* window) {
-  if (desk.ui_scale > 0) return desk.ui_scale;
+double ui_scale(const UiState& ui, const GlfwWindow* window) {
+  if (ui.ui_scale > 0) return ui.ui_scale;
   const double wanted = window != nullptr ? window->content_scale() : 1.0;
   return wanted > 1.01 ? wanted : 0.0;
 }
@@ -35,7 +35,7 @@ void Viewer::say(std::string text) {
 /// Pixels of the panels' layout, and how large letters on the surface are: as those of the panels, and never smaller
 /// than on a plain monitor; what a gallery writes on the surface is read from where its sentences are read.
 void Viewer::measure_window() {
-  const double height = stage_->traits().view.height, scale = ui_scale(desk(), given_.presenter.window());
+  const double height = stage_->traits().view.height, scale = ui_scale(ui(), given_.presenter.window());
   const glm::dvec2 mm = stage_->window_mm();
   ToolWindow& window = scene_.window;
   window.layout = Overlay::layout(stage_->traits().view.height, mm, scale);
@@ -59,11 +59,11 @@ PanelState Viewer::panel_state(TimestampNs now) {
   out.line.undo = editor_->history().undo_words();
   out.line.redo = editor_->history().redo_words();
   out.document = document();
-  out.desk = desk();
-  out.desk.beside.reset();
-  out.desk.pointing.at.reset();  // it moves, and nothing here shows it
+  out.ui = ui();
+  out.ui.beside.reset();
+  out.ui.pointing.at.reset();  // it moves, and nothing here shows it
   out.evidence = known_.evidence.of(visible_partitions(document()));
-  out.files = files_.list.state(desk().choosing, has_surface(), now);
+  out.files = files_.list.state(ui().choosing, has_surface(), now);
   if (tools_->slices.shown()) out.slices = slices();
   out.playing = known_.film.playing();
   const glm::dvec2 window = stage_->window_mm();
@@ -71,7 +71,7 @@ PanelState Viewer::panel_state(TimestampNs now) {
       glm::length(glm::dvec3(stage_->screen_from_model()[0]));  // of the screen for one mm of the object
   out.mm_per_px = window.y / (scene_.window.layout.y * scale);
   out.faint = present_.report.control == Control::kMouse || present_.report.control == Control::kHands;
-  if (desk().drawer != "film") return out;
+  if (ui().drawer != "film") return out;
   // One at a time, while nothing else moves.
   const bool rests = !present_.report.moving && !out.playing && !out.faint;
   out.thumbnails = known_.thumbnails.of(document().keyframes, *stage_, rests, [&](const Keyframe& key) {
@@ -85,7 +85,7 @@ PanelState Viewer::panel_state(TimestampNs now) {
 
 /// The pages of help, twice a second.
 void Viewer::tell_help(OverlayText& text, TimestampNs now) {
-  if (!desk().help) return text.help.clear();
+  if (!ui().help) return text.help.clear();
   if (present_.words.help_made >= 0 && now - present_.words.help_made < kHelpRefreshNs) return;
   StateFigures state;
   state.display = display();
@@ -111,9 +111,9 @@ void Viewer::update_overlay(TimestampNs now) {
   tell_help(text, now);
   text.gallery = present_.led.guidance.picture;
   text.panels.reset();
-  const bool files = desk().choosing.open || opening();
-  if ((desk().panels || desk().palette || files) && !desk().help) text.panels = panel_state(now);
-  text.legend = desk().legend && has_surface() && !stage_->measuring()
+  const bool files = ui().choosing.open || opening();
+  if ((ui().panels || ui().palette || files) && !ui().help) text.panels = panel_state(now);
+  text.legend = ui().legend && has_surface() && !stage_->measuring()
                     ? legend_of(scene_.shown(document(), present_.report.view).style)
                     : std::nullopt;
   text.light.reset();

@@ -43,7 +43,7 @@ Result<void> write(const fs::path& path, const Image& image, double dpi) {
 Result<void> ViewerPlace::switch_display(int step) {
   DUBSAR_TRY(to_.displays.step(step));
   if (step == 0) return {};
-  to_.scene.editor->desk().panels = to_.displays.panels_wanted();
+  to_.scene.editor->ui().panels = to_.displays.panels_wanted();
   say(tr("say.display", to_.displays.name()));
   return {};
 }

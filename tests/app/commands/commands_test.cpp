@@ -196,9 +196,9 @@ TEST(Keys, AMappingMovesAndRemovesThem) {
   EXPECT_EQ(plain.command_for("q", bench.editor), "");
   EXPECT_EQ(plain.command_for("ctrl+z", bench.editor), "") << "there is nothing to undo";
   EXPECT_EQ(plain.keys_for("help"), (std::vector<std::string>{"f1", "?"}));
-  bench.editor.desk().help = true;
+  bench.editor.ui().help = true;
   EXPECT_EQ(plain.command_for("3", bench.editor), "toggle_source 3");
-  bench.editor.desk().help = false;
+  bench.editor.ui().help = false;
   const KeyTable changed =
       KeyTable::create(bench.commands, {{"home", "none"}, {"q", "side reverse"}, {"f1", "next_display"}}).value();
   EXPECT_EQ(changed.command_for("home", bench.editor), "");
@@ -224,7 +224,7 @@ TEST(Commands, WindowCommandsReachThePlaceAndChangeNoDocument) {
   EXPECT_TRUE(bench.place.fullscreen);
   EXPECT_EQ(bench.place.toggled, (std::vector<std::size_t>{1}));
   EXPECT_FALSE(bench.place.ended) << "escape closed the help";
-  EXPECT_FALSE(bench.editor.desk().help);
+  EXPECT_FALSE(bench.editor.ui().help);
   bench.run("close");
   EXPECT_TRUE(bench.place.ended);
   EXPECT_EQ(bench.editor.history().undo_depth(), 0u);

@@ -10,14 +10,14 @@ namespace {
 TEST(FileCommands, OpenWithoutANameShowsTheDialogueAndAFileClosesIt) {
   Bench bench;
   bench.run("open");
-  EXPECT_TRUE(bench.editor.desk().choosing.open);
+  EXPECT_TRUE(bench.editor.ui().choosing.open);
   bench.run("open");
-  EXPECT_FALSE(bench.editor.desk().choosing.open);
+  EXPECT_FALSE(bench.editor.ui().choosing.open);
   bench.run("open");
   EXPECT_EQ(bench.refusal("open missing.exa"), "missing.exa: there is no such file");
-  EXPECT_TRUE(bench.editor.desk().choosing.open) << "it is still to be chosen";
+  EXPECT_TRUE(bench.editor.ui().choosing.open) << "it is still to be chosen";
   bench.run("open a name with blanks.exa");
-  EXPECT_FALSE(bench.editor.desk().choosing.open);
+  EXPECT_FALSE(bench.editor.ui().choosing.open);
   bench.run("open_recent 3");
   bench.run("next_file");
   bench.run("previous_file");
@@ -29,12 +29,12 @@ TEST(FileCommands, OpenWithoutANameShowsTheDialogueAndAFileClosesIt) {
 TEST(FileCommands, FoldersAreGoneThroughFromThePresentOne) {
   Bench bench;
   bench.run("open_folder tmp");
-  EXPECT_EQ(bench.editor.desk().choosing.folder, "/tmp");
-  EXPECT_TRUE(bench.editor.desk().choosing.open);
+  EXPECT_EQ(bench.editor.ui().choosing.folder, "/tmp");
+  EXPECT_TRUE(bench.editor.ui().choosing.open);
   bench.run("open_folder ..");
-  EXPECT_EQ(bench.editor.desk().choosing.folder, "/");
+  EXPECT_EQ(bench.editor.ui().choosing.folder, "/");
   EXPECT_EQ(bench.refusal("open_folder not_there"), "open_folder: /not_there is no folder");
-  EXPECT_EQ(bench.editor.desk().choosing.folder, "/");
+  EXPECT_EQ(bench.editor.ui().choosing.folder, "/");
 }
 
 TEST(FileCommands, EscapeStopsReadingThenClosesTheDialogueThenEnds) {
@@ -43,9 +43,9 @@ TEST(FileCommands, EscapeStopsReadingThenClosesTheDialogueThenEnds) {
   bench.run("open");
   bench.run("close");
   EXPECT_FALSE(bench.place.opening);
-  EXPECT_TRUE(bench.editor.desk().choosing.open);
+  EXPECT_TRUE(bench.editor.ui().choosing.open);
   bench.run("close");
-  EXPECT_FALSE(bench.editor.desk().choosing.open);
+  EXPECT_FALSE(bench.editor.ui().choosing.open);
   EXPECT_FALSE(bench.place.ended);
   bench.run("close");
   EXPECT_TRUE(bench.place.ended);

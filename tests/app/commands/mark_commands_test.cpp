@@ -21,7 +21,7 @@ TEST(MarkCommands, ClicksWithAToolMakeAMeasureAsSoonAsThereAreEnough) {
   bench.run("tool distance");
   bench.run("point 0,0,9");
   EXPECT_EQ(bench.now().measures.size(), 0u);
-  EXPECT_EQ(bench.editor.desk().pending.size(), 1u);
+  EXPECT_EQ(bench.editor.ui().pending.size(), 1u);
   bench.run("point 3,4,9");
   ASSERT_EQ(bench.now().measures.size(), 1u);
   const Measure& measure = bench.now().measures[0];
@@ -29,7 +29,7 @@ TEST(MarkCommands, ClicksWithAToolMakeAMeasureAsSoonAsThereAreEnough) {
   EXPECT_EQ(measure.figures.straight_mm, 5.0);
   EXPECT_EQ(measure.part, "tablet");
   EXPECT_EQ(bench.place.said, "5.000 mm");
-  EXPECT_EQ(bench.editor.desk().tool, "distance") << "the next two clicks measure again";
+  EXPECT_EQ(bench.editor.ui().tool, "distance") << "the next two clicks measure again";
   EXPECT_EQ(bench.editor.history().undo_depth(), 1u) << "one step";
   bench.run("tool angle");
   for (const char* at : {"1,0,0", "0,0,0", "0,1,0"}) bench.run(std::string("point ") + at);
@@ -40,7 +40,7 @@ TEST(MarkCommands, ClicksWithAToolMakeAMeasureAsSoonAsThereAreEnough) {
   EXPECT_EQ(bench.refusal("point 99,0,0"), "depth: no surface") << "what cannot be measured says why";
   EXPECT_EQ(bench.now().measures.size(), 3u);
   bench.run("tool depth");
-  EXPECT_EQ(bench.editor.desk().tool, "turn") << "said again, it is laid down";
+  EXPECT_EQ(bench.editor.ui().tool, "turn") << "said again, it is laid down";
 }
 
 TEST(MarkCommands, TheDepthOfAWedgeIsToldWithItsUncertainty) {
@@ -91,7 +91,7 @@ TEST(MarkCommands, NotesAreNumberedAsEditionsCountAndComeBackAsTheyWereSeen) {
   EXPECT_EQ(bench.now().notes[2].line_mm.size(), 2u);
   EXPECT_EQ(bench.now().notes[3].label, "o. 2");
   EXPECT_EQ(bench.now().notes[3].created, "2026-11-27");
-  EXPECT_EQ(bench.editor.desk().note, 4u) << "the new one is open";
+  EXPECT_EQ(bench.editor.ui().note, 4u) << "the new one is open";
   bench.run("note_text 2 um-ma a-\u0161\u00f9r");
   bench.run("note_label 2 r. 12");
   bench.run("side obverse");
@@ -234,7 +234,7 @@ TEST(MarkCommands, EscapeLaysTheToolDownAndAsksBeforeItEndsASessionWithWorkInIt)
   Bench bench;
   bench.run("tool distance");
   bench.run("close");
-  EXPECT_EQ(bench.editor.desk().tool, "turn");
+  EXPECT_EQ(bench.editor.ui().tool, "turn");
   EXPECT_FALSE(bench.place.ended);
   bench.run("measure_distance 0,0,0 1,0,0");
   bench.run("close");
@@ -269,7 +269,7 @@ TEST(MarkCommands, ASessionThatBeganWithNotesAsksWhenSomethingWasChanged) {
   ASSERT_TRUE(commands.run("style phong", editor));
   ASSERT_TRUE(commands.run("close", editor));
   EXPECT_FALSE(place.ended);
-  EXPECT_TRUE(editor.desk().leaving);
+  EXPECT_TRUE(editor.ui().leaving);
   ASSERT_TRUE(commands.run("close", editor));
   EXPECT_TRUE(place.ended);
 }

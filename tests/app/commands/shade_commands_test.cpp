@@ -31,7 +31,7 @@ TEST(ShadeCommands, RadianceAndColoursGoOnWithoutAnArgument) {
     EXPECT_EQ(bench.editor.document().style.colours, name);
   }
   bench.run("legend");
-  EXPECT_FALSE(bench.editor.desk().legend);
+  EXPECT_FALSE(bench.editor.ui().legend);
 }
 
 TEST(BackFaces, GoThroughThreeWays) {
@@ -75,29 +75,29 @@ TEST(CutBox, ASideThatIsCutNoMoreTakesItsOwnCutAwayAndNoOther) {
 TEST(CutBox, ItsHandlesComeAndGoAndEscapeTakesThemAway) {
   Bench bench;
   bench.run("cut_handles");
-  EXPECT_TRUE(bench.editor.desk().pointing.cut_box);
+  EXPECT_TRUE(bench.editor.ui().pointing.cut_box);
   bench.run("cut_handles");
-  EXPECT_FALSE(bench.editor.desk().pointing.cut_box);
+  EXPECT_FALSE(bench.editor.ui().pointing.cut_box);
   bench.run("cut_handles");
   bench.run("close");
-  EXPECT_FALSE(bench.editor.desk().pointing.cut_box);
+  EXPECT_FALSE(bench.editor.ui().pointing.cut_box);
   EXPECT_EQ(bench.editor.history().undo_depth(), 0u) << "nothing of the document";
 }
 
 TEST(PointerCommands, AreOfTheDeskAndAreNotUndone) {
   Bench bench;
   bench.run("magnify");
-  EXPECT_EQ(bench.editor.desk().pointing.magnify, 3.0);
+  EXPECT_EQ(bench.editor.ui().pointing.magnify, 3.0);
   bench.run("magnify 8");
   bench.run("cursor");
   bench.run("pointer -0.25,0.125");
-  EXPECT_EQ(bench.editor.desk().pointing.magnify, 8.0);
-  EXPECT_TRUE(bench.editor.desk().pointing.cursor);
-  EXPECT_EQ(bench.editor.desk().pointing.at, glm::dvec2(-0.25, 0.125));
+  EXPECT_EQ(bench.editor.ui().pointing.magnify, 8.0);
+  EXPECT_TRUE(bench.editor.ui().pointing.cursor);
+  EXPECT_EQ(bench.editor.ui().pointing.at, glm::dvec2(-0.25, 0.125));
   bench.run("sweep 30");
-  EXPECT_EQ(bench.editor.desk().sweep, (LightSweep{30.0, 8.0}));
+  EXPECT_EQ(bench.editor.ui().sweep, (LightSweep{30.0, 8.0}));
   bench.run("sweep");
-  EXPECT_FALSE(bench.editor.desk().sweep);
+  EXPECT_FALSE(bench.editor.ui().sweep);
   EXPECT_FALSE(bench.editor.undo());
   for (const char* wrong : {"magnify 9", "pointer 1", "sweep 2", "sweep 20 1"})
     EXPECT_FALSE(bench.commands.run(wrong, bench.editor)) << wrong;

@@ -63,8 +63,8 @@ TEST(TextCommands, TheNextLineLiesAtTheSameIntervalAndOneAboveHalfWay) {
   EXPECT_EQ(bench.now().notes[1].line_mm, (std::vector<glm::dvec3>{{1, 25, 5}, {9, 25, 5}}))
       << "5 mm, as letters have it";
   EXPECT_EQ(bench.now().notes[1].label, "o. 2");
-  EXPECT_EQ(bench.editor.desk().note, 2u) << "it is open, and what is typed is its text";
-  EXPECT_EQ(bench.editor.desk().pointing.notes, 1u);
+  EXPECT_EQ(bench.editor.ui().note, 2u) << "it is open, and what is typed is its text";
+  EXPECT_EQ(bench.editor.ui().pointing.notes, 1u);
   bench.run("delete_note 2");
   bench.run("add_line 1,27,0 9,27,0 b");
   bench.run("next_line 2");

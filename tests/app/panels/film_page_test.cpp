@@ -26,8 +26,8 @@ class FilmPage : public ::testing::Test {
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-    state_.desk.panels = true;
-    state_.desk.drawer = "film";
+    state_.ui.panels = true;
+    state_.ui.drawer = "film";
     for (int i = 0; i < 4; ++i) {
       state_.document.keyframes.push_back({});
       state_.document.keyframes.back().time_s = 2.0 * i;

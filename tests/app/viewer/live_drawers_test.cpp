@@ -38,7 +38,7 @@ class LiveDrawers : public Live {
             }};
   }
   static std::function<bool(const ViewMoment&)> drawer(const std::string& name) {
-    return [name](const ViewMoment& m) { return m.viewer.desk().drawer == name; };
+    return [name](const ViewMoment& m) { return m.viewer.ui().drawer == name; };
   }
   static std::function<bool(const ViewMoment&)> text(const std::string& words) {
     return [words](const ViewMoment& m) {
@@ -51,8 +51,8 @@ TEST_F(LiveDrawers, TheWholeLineOfATabOpensItsDrawer) {
   const auto done = play({
       click_down(kWide - 14, 45, 4, drawer("light")),  // beside the word
       {[] { person_->key("escape"); }, drawer("")},
-      click_down(71, 45, 4, [](const ViewMoment& m) { return m.viewer.desk().tool == "note"; }),
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
+      click_down(71, 45, 4, [](const ViewMoment& m) { return m.viewer.ui().tool == "note"; }),
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().tool == "turn"; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -84,7 +84,7 @@ TEST_F(LiveDrawers, WhatALongDrawerHasAtItsEndIsReachedWithItsBar) {
 TEST_F(LiveDrawers, ALetterThatIsPressedStandsWhereIsTyped) {
   const auto row = std::make_shared<int>(110);  // of the letters, once it was found
   const auto done = play({
-      {[] { person_->key("n"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "note"; }},
+      {[] { person_->key("n"); }, [](const ViewMoment& m) { return m.viewer.ui().tool == "note"; }},
       {[] {
          click(400, 300);
          person_->key("s");
@@ -105,9 +105,9 @@ TEST_F(LiveDrawers, ALetterThatIsPressedStandsWhereIsTyped) {
       {[row] { click(kWide - 345, *row - 4); }, text("x\u0161sa\u0161de")},
       {[] { person_->key("k"); }, text("x\u0161ksa\u0161de")},
       {[] { person_->key("escape"); }, text("x\u0161ksa\u0161de")},
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().tool == "turn"; }},
       {[] { person_->key("escape"); }, drawer("")},
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().leaving; }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().leaving; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;

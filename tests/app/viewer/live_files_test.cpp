@@ -108,8 +108,8 @@ class LiveFiles : public Live {
 TEST_F(LiveFiles, TheWindowIsThereBeforeTheSurfaceAndAnswersWhileItIsRead) {
   const auto done = open_and({file("slow.ply")},
                              {until([](const ViewMoment& m) { return m.frames > 0 && !m.viewer.has_surface(); }),
-                              {[] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
-                              {[] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
+                              {[] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.ui().help; }},
+                              {[] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.ui().help; }},
                               {[this] { let_come(); }, [this](const ViewMoment& m) { return triangles(m) == all_; }},
                               end()});
   ASSERT_TRUE(done) << done.error().message;
@@ -154,10 +154,10 @@ TEST_F(LiveFiles, TheWindowIsCalledByTheFileThatIsShownAndTheOneThatIsRead) {
 }
 
 TEST_F(LiveFiles, WithoutAFileTheDialogueIsOpenAndEscapeClosesItThenEnds) {
-  const auto done = open_and(
-      {}, {until([](const ViewMoment& m) { return m.viewer.desk().choosing.open; }),
-           {[] { person_->key("escape"); }, [](const ViewMoment& m) { return !m.viewer.desk().choosing.open; }},
-           end()});
+  const auto done =
+      open_and({}, {until([](const ViewMoment& m) { return m.viewer.ui().choosing.open; }),
+                    {[] { person_->key("escape"); }, [](const ViewMoment& m) { return !m.viewer.ui().choosing.open; }},
+                    end()});
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->triangles, 0u);
 }
@@ -171,7 +171,7 @@ TEST_F(LiveFiles, ScriptsOpenFilesGoThroughThemAndUndoBelongsToEach) {
                     {0.5, "drawer light"}};
   const auto done =
       open_and({file("a.ply")},
-               {until([](const ViewMoment& m) { return m.viewer.desk().drawer == "light"; }), close_drawer(), end()});
+               {until([](const ViewMoment& m) { return m.viewer.ui().drawer == "light"; }), close_drawer(), end()});
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(shown_, (std::vector<fs::path>{file("a.ply"), file("b.ply")}));
   EXPECT_EQ(done->triangles, all_);

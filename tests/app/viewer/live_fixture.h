@@ -111,7 +111,7 @@ class Live : public ::testing::Test {
   }
   /// Escape closes what is open before it ends a session.
   Step close_drawer() {
-    return {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().drawer.empty(); }};
+    return {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().drawer.empty(); }};
   }
   Image offscreen(const std::string& display, const ViewState& view) const {
     StageOptions options = options_.stage;

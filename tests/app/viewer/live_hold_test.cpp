@@ -181,7 +181,7 @@ TEST_F(Held, ASideOfTheBoxFollowsThePointerAsOneStepAndItsHandleLightsUp) {
        },
        [&](const ViewMoment& m) {
          handle = seen_px(m, {20.0, 0.0, 0.0});
-         return m.viewer.desk().pointing.cut_box;
+         return m.viewer.ui().pointing.cut_box;
        }},
       look(box),
       {[&] { go(handle); }, [](const ViewMoment&) { return true; }},
@@ -208,7 +208,7 @@ TEST_F(Held, ASideOfTheBoxFollowsThePointerAsOneStepAndItsHandleLightsUp) {
        },
        [&](const ViewMoment& m) { return m.viewer.document().clips.empty(); }},
       look(back),
-      {[&] { person_->key("escape"); }, [](const ViewMoment& m) { return !m.viewer.desk().pointing.cut_box; }},
+      {[&] { person_->key("escape"); }, [](const ViewMoment& m) { return !m.viewer.ui().pointing.cut_box; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;

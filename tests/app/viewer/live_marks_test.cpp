@@ -26,8 +26,8 @@ TEST_F(Live, ClicksWithAToolMeasureAndDragsStillTurn) {
   Image before, after;
   const auto done = play({
       look(before),
-      {[] { person_->key("d"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "distance"; }},
-      {[] { click(*person_, 100, 120); }, [](const ViewMoment& m) { return m.viewer.desk().pending.size() == 1; }},
+      {[] { person_->key("d"); }, [](const ViewMoment& m) { return m.viewer.ui().tool == "distance"; }},
+      {[] { click(*person_, 100, 120); }, [](const ViewMoment& m) { return m.viewer.ui().pending.size() == 1; }},
       {[] { click(*person_, 220, 120); }, measures(1)},
       look(after),
       {[] {
@@ -45,15 +45,15 @@ TEST_F(Live, ClicksWithAToolMeasureAndDragsStillTurn) {
          click(*person_, 150, 110);
        },
        [](const ViewMoment& m) { return m.viewer.document().notes.size() == 1; }},
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().tool == "turn"; }},
       {[] {  // also where all of them come during one picture, and no tool was in the hand before
          person_->key("d");
          click(*person_, 100, 120);
          click(*person_, 160, 120);
        },
        measures(2)},
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().leaving; }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().tool == "turn"; }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().leaving; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -76,7 +76,7 @@ TEST_F(Live, WhatIsTypedAfterANoteWasPinnedIsItsTextAndEscapeKeepsIt) {
     };
   };
   const auto done = play({
-      {[] { person_->key("n"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "note"; }},
+      {[] { person_->key("n"); }, [](const ViewMoment& m) { return m.viewer.ui().tool == "note"; }},
       {[] {
          click(*person_, 400, 300);
          person_->key("s");  // at once
@@ -87,9 +87,9 @@ TEST_F(Live, WhatIsTypedAfterANoteWasPinnedIsItsTextAndEscapeKeepsIt) {
        },
        text("side 3")},
       {[] { person_->key("escape"); }, text("side 3")},
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().drawer.empty(); }},
-      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().leaving; }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().tool == "turn"; }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().drawer.empty(); }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.ui().leaving; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -109,13 +109,13 @@ TEST_F(Live, WordsAreTypedIntoThePaletteAndKeysDoNothingElseMeanwhile) {
          person_->let_go("control");
          person_->key("s");  // at once
        },
-       [](const ViewMoment& m) { return m.viewer.desk().palette; }},
+       [](const ViewMoment& m) { return m.viewer.ui().palette; }},
       {[] {
          for (const char* letter : {"i", "d", "e", "space", "r", "e", "v"}) person_->key(letter);
          person_->key("enter");
        },
        [](const ViewMoment& m) {
-         return !m.viewer.desk().palette && facing_side(m.report.view.rotation) == Side::kReverse && !m.report.moving;
+         return !m.viewer.ui().palette && facing_side(m.report.view.rotation) == Side::kReverse && !m.report.moving;
        }},
       end(),
   });

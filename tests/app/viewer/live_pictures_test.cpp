@@ -63,8 +63,8 @@ TEST_F(Live, OneViewHasNoEyesToExchange) {
   const auto done = play({
       look(before),
       {[&] { person_->key("x"); }, [](const ViewMoment&) { return true; }},
-      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
-      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.ui().help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.ui().help; }},
       look(after),
       end(),
   });

@@ -49,7 +49,7 @@ TEST_F(Live, ClicksInASliceMoveThePlaceAndTheKeyLaysThemThroughThePointersPlace)
          person_->key("s");
          person_->let_go("shift");
        },
-       [](const ViewMoment& m) { return m.viewer.desk().drawer == "slices" && m.viewer.slices().panes[2].ready(); }},
+       [](const ViewMoment& m) { return m.viewer.ui().drawer == "slices" && m.viewer.slices().panes[2].ready(); }},
       {[&] {  // a quarter of the picture to the right of its middle, and up
          person_->point(kX + at(z.x + 0.75f * z.width), kY + at(z.y + 0.25f * z.height));
          person_->press(1);

@@ -113,7 +113,7 @@ TEST_F(Live, ALostSourceIsNamedAndUsedAgainAndAMissingOneIsTriedAgain) {
        },
        health(1, SourceHealth::kOff)},
       {[&] { person_->key("2"); }, health(1, SourceHealth::kPresent)},
-      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.ui().help; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -169,7 +169,7 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
 
 TEST_F(Live, KeysThatTheSessionItselfTakesAreInItsRecording) {
   options_.files.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_keys_{}.jsonl", ::getpid());
-  const auto help = [](bool open) { return [open](const ViewMoment& m) { return m.viewer.desk().help == open; }; };
+  const auto help = [](bool open) { return [open](const ViewMoment& m) { return m.viewer.ui().help == open; }; };
   const auto done = play({{[] { person_->key("f1"); }, help(true)},
                           {[] { person_->key("f1"); }, help(false)},
                           {[] { person_->key("right"); },

@@ -91,7 +91,7 @@ TEST_F(Live, HelpInLargeLettersGoesOnBelowThePage) {
   options_.around.scale = 2.0;
   Image first, below, end_of_it, again;
   const auto done = play({
-      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.ui().help; }},
       look(first),
       {[&] {
          for (int i = 0; i < 3; ++i) {
@@ -105,7 +105,7 @@ TEST_F(Live, HelpInLargeLettersGoesOnBelowThePage) {
       look(end_of_it),
       {[&] { person_->key("home"); }, [](const ViewMoment&) { return true; }},
       look(again),
-      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.ui().help; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -119,19 +119,19 @@ TEST_F(Live, HelpIsShownInTheMiddleOfEveryDisplayAndGoesAgain) {
   Image plain, help, question, gone;
   const auto done = play({
       look(plain),
-      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.ui().help; }},
       look(help),
       {[&] { person_->key("escape"); },
-       [](const ViewMoment& m) { return !m.viewer.desk().help; }},  // closes the help, not the window
+       [](const ViewMoment& m) { return !m.viewer.ui().help; }},  // closes the help, not the window
       look(gone),
       {[&] {
          person_->hold("shift");
          person_->key("slash");
          person_->let_go("shift");
        },
-       [](const ViewMoment& m) { return m.viewer.desk().help; }},
+       [](const ViewMoment& m) { return m.viewer.ui().help; }},
       look(question),
-      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.ui().help; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -207,7 +207,7 @@ TEST_F(Live, ButtonsOnThePanelsDoWhatTheirCommandsDoAndTabTakesThePanelsAway) {
                      person_->settle();
                    },
                    [&](const ViewMoment& m) { return !m.report.moving && m.report.control == Control::kNone; }});
-  steps.push_back({[&] { person_->key("tab"); }, [&](const ViewMoment& m) { return !m.viewer.desk().panels; }});
+  steps.push_back({[&] { person_->key("tab"); }, [&](const ViewMoment& m) { return !m.viewer.ui().panels; }});
   steps.push_back({{}, [&](const ViewMoment&) {
                      without = shot_of_all();
                      return true;

@@ -151,13 +151,13 @@ TEST_F(Live, EscapeThatIsHeldClosesTheHelpAndNotTheWindow) {
   double pressed_s = 0.0;
   const auto seconds = [] { return 1e-9 * static_cast<double>(SteadyClock().now()); };
   const auto done = play({
-      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.ui().help; }},
       {[&] {
          person_->hold("escape");
          pressed_s = seconds();
        },
        [&](const ViewMoment& m) {
-         return !m.viewer.desk().help && seconds() - pressed_s > 1.5;
+         return !m.viewer.ui().help && seconds() - pressed_s > 1.5;
        }},  // keys repeat after 0.66 s
       {[&] { person_->let_go("escape"); }, [](const ViewMoment& m) { return !m.presenter.window()->should_close(); }},
       end(),

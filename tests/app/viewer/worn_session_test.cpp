@@ -82,7 +82,7 @@ TEST_F(WornSession, HelpStandsInTheRoomBehindTheObjectForBothEyesAndGoesAgain) {
   options_.steps = {{1.0, "help"}, {2.0, "help"}};
   std::vector<bool> help;
   const auto done = run_view(testing::lettered_box(), options_, progress_,
-                             [&](const ViewMoment& m) { help.push_back(m.viewer.desk().help); });
+                             [&](const ViewMoment& m) { help.push_back(m.viewer.ui().help); });
   ASSERT_TRUE(done) << done.error().message;
   ASSERT_EQ(std::count(help.begin(), help.end(), true), 30);
   const auto& frames = made_->frames;

@@ -47,7 +47,7 @@ PanelState full_desk() {
   note.text = "[QXZ";
   note.line_mm = {{0, 0, 0}, {9, 0, 0}};
   document.notes = {note, note};
-  out.desk.note = 1;
+  out.ui.note = 1;
   for (int i = 0; i < 3; ++i) document.keyframes.emplace_back().time_s = 2.0 * i;
   document.clips.push_back({});
   out.thumbnails = {11, 12, 13};
@@ -57,7 +57,7 @@ PanelState full_desk() {
   for (SlicePane& pane : out.slices.panes) pane.wanted.width = pane.wanted.height = 200;
   out.files.has_surface = true;
   out.files.names = {"QXZ.exa", "QXZ.ply"};
-  out.desk.panels = true;
+  out.ui.panels = true;
   return out;
 }
 
@@ -147,7 +147,7 @@ TEST_F(DrawnWords, EveryDrawerSpeaksTheLanguageAndHasRoomForIt) {
   speak_made_up();
   PanelState state = full_desk();
   for (const char* const drawer : kDrawers) {
-    state.desk.drawer = drawer;
+    state.ui.drawer = drawer;
     check(panels(state, 1600.0f, 900.0f), std::string("drawer ") + drawer, 1600.0f);
   }
 }
@@ -159,7 +159,7 @@ TEST_F(DrawnWords, EmptyDrawersSayWhatToDo) {
   state.document.notes.clear();
   state.document.keyframes.clear();
   for (const char* const drawer : {"measures", "notes", "film"}) {
-    state.desk.drawer = drawer;
+    state.ui.drawer = drawer;
     check(panels(state, 1600.0f, 900.0f), std::string("empty drawer ") + drawer, 1600.0f);
   }
 }
@@ -167,17 +167,17 @@ TEST_F(DrawnWords, EmptyDrawersSayWhatToDo) {
 TEST_F(DrawnWords, FilesAndCommandsAreAskedForInTheLanguage) {
   speak_made_up();
   PanelState state = full_desk();
-  state.desk.panels = false;
-  state.desk.choosing.open = true;
+  state.ui.panels = false;
+  state.ui.choosing.open = true;
   state.files.recent = {{"/QXZ/QXZ.exa", true}, {"/QXZ/QXZ.ply", false}};
   state.files.listing = FolderListing{"/QXZ", {{"QXZ", true, 0}, {"QXZ.exa", false, 2'901'985}}, {}};
   check(panels(state, 1600.0f, 900.0f), "open dialogue", 1600.0f);
   state.files.listing->entries.clear();
   state.files.opening = Opening{"QXZ.exa", 0.4, 100.0};
   check(panels(state, 1600.0f, 900.0f), "empty folder, and a file that is read", 1600.0f);
-  state.desk.choosing.open = false;
+  state.ui.choosing.open = false;
   state.files.opening.reset();
-  state.desk.palette = true;
+  state.ui.palette = true;
   check(panels(state, 1600.0f, 900.0f), "palette", 1600.0f);
 }
 
@@ -209,7 +209,7 @@ TEST_F(DrawnWords, GermanAndEnglishFitTheSmallestWindow) {
     PanelState state = full_desk();
     for (const auto& [width, height] : {std::pair{1280.0f, 720.0f}, std::pair{960.0f, 540.0f}})
       for (const char* const drawer : kDrawers) {
-        state.desk.drawer = drawer;
+        state.ui.drawer = drawer;
         const auto drawn = panels(state, width, height);
         const std::string page = language + fmt::format(" at {} drawer ", width) + drawer;
         for (const std::string& both : overlapping(drawn)) ADD_FAILURE() << page << ": one over the other: " << both;
