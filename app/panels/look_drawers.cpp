@@ -24,11 +24,11 @@ std::string figures(fmt::format_string<const Values&...> format, const Values&..
 }
 
 /// What the hatch means, and how much of the surface it is.
-void draw_evidence(const Board& desk) {
-  bool evidence = desk.state.document.style.evidence;
-  if (ImGui::Checkbox(tr("look.mark_inferred").c_str(), &evidence)) desk.commands.push_back("evidence");
-  explain(desk, "evidence");
-  const double all = desk.state.evidence.measured_mm2 + desk.state.evidence.inferred_mm2;
+void draw_evidence(const PanelContext& context) {
+  bool evidence = context.state.document.style.evidence;
+  if (ImGui::Checkbox(tr("look.mark_inferred").c_str(), &evidence)) context.commands.push_back("evidence");
+  explain(context, "evidence");
+  const double all = context.state.evidence.measured_mm2 + context.state.evidence.inferred_mm2;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float size = ImGui::GetTextLineHeight();
   ImDrawList* const draw = ImGui::GetWindowDrawList();
@@ -38,97 +38,97 @@ void draw_evidence(const Board& desk) {
     draw->AddRectFilled(ImVec2(x, corner.y), ImVec2(std::min(x + 4.0f, end.x), end.y), kStripe);
   ImGui::Dummy(ImVec2(2.0f * size + 4.0f, size));
   ImGui::SameLine();
-  ImGui::TextUnformatted(figures("{:.1f} mm\u00b2, {:.1f} %", desk.state.evidence.inferred_mm2,
-                                 all > 0 ? 100.0 * desk.state.evidence.inferred_mm2 / all : 0.0)
+  ImGui::TextUnformatted(figures("{:.1f} mm\u00b2, {:.1f} %", context.state.evidence.inferred_mm2,
+                                 all > 0 ? 100.0 * context.state.evidence.inferred_mm2 / all : 0.0)
                              .c_str());
   say_dim(tr("look.inferred"));
-  ImGui::Text("%.0f mm\u00b2", desk.state.evidence.measured_mm2);
+  ImGui::Text("%.0f mm\u00b2", context.state.evidence.measured_mm2);
   ImGui::SameLine();
   ImGui::TextColored(ImColor(kDim), "%s", tr("look.measured").c_str());
 }
 
 /// A second style, and how much of it.
-void draw_blend(const Board& desk) {
-  const Command* const style = desk.keys.commands().find("style");
+void draw_blend(const PanelContext& context) {
+  const Command* const style = context.keys.commands().find("style");
   if (style == nullptr) return;
-  const auto share = static_cast<float>(100.0 * desk.state.document.style.share);
+  const auto share = static_cast<float>(100.0 * context.state.document.style.share);
   const std::string other =
-      desk.state.document.style.other.empty() ? tr("look.nothing") : style_words(desk.state.document.style.other);
+      context.state.document.style.other.empty() ? tr("look.nothing") : style_words(context.state.document.style.other);
   ImGui::SetNextItemWidth(combo_width(other));
   if (ImGui::BeginCombo(tr("look.mixed_with").c_str(), other.c_str())) {
     for (const std::string& name : style->values)
-      if (ImGui::Selectable(style_words(name).c_str(), name == desk.state.document.style.other))
-        desk.commands.push_back(fmt::format("blend {} {:.4g}", name, share > 0 ? share : 50.0f));
+      if (ImGui::Selectable(style_words(name).c_str(), name == context.state.document.style.other))
+        context.commands.push_back(fmt::format("blend {} {:.4g}", name, share > 0 ? share : 50.0f));
     ImGui::EndCombo();
   }
-  explain(desk, "blend");
-  if (desk.state.document.style.other.empty()) return;
+  explain(context, "blend");
+  if (context.state.document.style.other.empty()) return;
   float percent = share;
   if (percent_slider(tr("look.of_it"), percent, 120.0f, 100.0f))
-    desk.commands.push_back(fmt::format("blend {} {:.4g}", desk.state.document.style.other, percent));
-  explain(desk, "blend");
+    context.commands.push_back(fmt::format("blend {} {:.4g}", context.state.document.style.other, percent));
+  explain(context, "blend");
 }
 
 std::string colour_words(const std::string& name) { return tr_name("colours", name.empty() ? "designed" : name); }
 
 /// Radiance scaling, and the colours of figures with their legend.
-void draw_shades(const Board& desk) {
-  auto percent = static_cast<float>(100.0 * desk.state.document.style.radiance);
+void draw_shades(const PanelContext& context) {
+  auto percent = static_cast<float>(100.0 * context.state.document.style.radiance);
   if (percent_slider(tr("look.ridges"), percent, 120.0f, 200.0f))
-    desk.commands.push_back(fmt::format("radiance {:.4g}", percent));
-  explain(desk, "radiance");
-  const Command* const colours = desk.keys.commands().find("colours");
-  ImGui::SetNextItemWidth(combo_width(colour_words(desk.state.document.style.colours)));
+    context.commands.push_back(fmt::format("radiance {:.4g}", percent));
+  explain(context, "radiance");
+  const Command* const colours = context.keys.commands().find("colours");
+  ImGui::SetNextItemWidth(combo_width(colour_words(context.state.document.style.colours)));
   if (colours != nullptr &&
-      ImGui::BeginCombo(tr("look.colours").c_str(), colour_words(desk.state.document.style.colours).c_str())) {
+      ImGui::BeginCombo(tr("look.colours").c_str(), colour_words(context.state.document.style.colours).c_str())) {
     for (const std::string& name : colours->values)
-      if (ImGui::Selectable(colour_words(name).c_str(), name == desk.state.document.style.colours))
-        desk.commands.push_back("colours " + name);
+      if (ImGui::Selectable(colour_words(name).c_str(), name == context.state.document.style.colours))
+        context.commands.push_back("colours " + name);
     ImGui::EndCombo();
   }
-  explain(desk, "colours");
+  explain(context, "colours");
 }
 
 }  // namespace
 
-void draw_parts(const Board& desk) {
-  for (std::size_t i = 0; i < desk.state.document.parts.size(); ++i) {
-    const Part& part = desk.state.document.parts[i];
+void draw_parts(const PanelContext& context) {
+  for (std::size_t i = 0; i < context.state.document.parts.size(); ++i) {
+    const Part& part = context.state.document.parts[i];
     bool visible = part.visible;
     if (ImGui::Checkbox(tr_name("part", part.name).c_str(), &visible))
-      desk.commands.push_back(fmt::format("part {}", i + 1));
-    explain(desk, fmt::format("part {}", i + 1));
+      context.commands.push_back(fmt::format("part {}", i + 1));
+    explain(context, fmt::format("part {}", i + 1));
     auto percent = static_cast<float>(100.0 * part.opacity);
     ImGui::SameLine();
     const float left = std::max(ImGui::GetCursorPosX(), 144.0f), figure = ImGui::CalcTextSize(" 100 %").x;
     ImGui::SetCursorPosX(left);  // behind long names
     ImGui::PushID(static_cast<int>(i));
     if (percent_slider("##opacity", percent, std::max(kDrawer - left - figure - 2.0f * kGap, 24.0f)))
-      desk.commands.push_back(fmt::format("part_opacity {} {:.4g}", i + 1, percent));
-    explain(desk, "part_opacity");
+      context.commands.push_back(fmt::format("part_opacity {} {:.4g}", i + 1, percent));
+    explain(context, "part_opacity");
     std::array<float, 3> colour{}, offset{};
     for (std::size_t c = 0; c < 3; ++c) {
       colour[c] = static_cast<float>(part.colour[c]) / 255.0f;
       offset[c] = static_cast<float>(part.offset_mm[static_cast<int>(c)]);
     }
     if (ImGui::ColorEdit3("##colour", colour.data(), ImGuiColorEditFlags_NoInputs))
-      desk.commands.push_back(fmt::format("part_colour {} {:02x}{:02x}{:02x}", i + 1, std::lround(255 * colour[0]),
-                                          std::lround(255 * colour[1]), std::lround(255 * colour[2])));
-    explain(desk, "part_colour");
+      context.commands.push_back(fmt::format("part_colour {} {:02x}{:02x}{:02x}", i + 1, std::lround(255 * colour[0]),
+                                             std::lround(255 * colour[1]), std::lround(255 * colour[2])));
+    explain(context, "part_colour");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(196.0f);
     if (ImGui::DragFloat3("##offset", offset.data(), 0.2f, -500.0f, 500.0f, "%.1f mm"))
-      desk.commands.push_back(
+      context.commands.push_back(
           fmt::format("part_offset {} {:.4g},{:.4g},{:.4g}", i + 1, offset[0], offset[1], offset[2]));
-    explain(desk, "part_offset");
+    explain(context, "part_offset");
     ImGui::PopID();
   }
-  button(desk, tr("look.all_parts"), "all_parts", false);
+  button(context, tr("look.all_parts"), "all_parts", false);
 }
 
 /// A ball seen from the front: the light stands where it is touched, low at its
 /// rim.
-void draw_light(const Board& desk) {
+void draw_light(const PanelContext& context) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("ball", ImVec2(kBall, kBall));
   const ImVec2 middle(corner.x + 0.5f * kBall, corner.y + 0.5f * kBall);
@@ -136,46 +136,46 @@ void draw_light(const Board& desk) {
   if (ImGui::IsItemActive()) {
     const ImVec2 at = ImGui::GetIO().MousePos;
     const LightPlace asked = light_over((at.x - middle.x) / radius, (middle.y - at.y) / radius);
-    if (std::abs(asked.azimuth_deg - desk.state.document.light.azimuth_deg) > 0.05 ||
-        std::abs(asked.elevation_deg - desk.state.document.light.elevation_deg) > 0.05)
-      desk.commands.push_back(fmt::format("light {:.1f},{:.1f}", asked.azimuth_deg, asked.elevation_deg));
+    if (std::abs(asked.azimuth_deg - context.state.document.light.azimuth_deg) > 0.05 ||
+        std::abs(asked.elevation_deg - context.state.document.light.elevation_deg) > 0.05)
+      context.commands.push_back(fmt::format("light {:.1f},{:.1f}", asked.azimuth_deg, asked.elevation_deg));
   }
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   draw->AddCircleFilled(middle, radius, IM_COL32(0x2b, 0x2d, 0x31, 0xff), 48);
   draw->AddCircle(middle, radius, kLine, 48, 1.5f);
-  const glm::dvec3 stands = place_over(desk.state.document.light);
+  const glm::dvec3 stands = place_over(context.state.document.light);
   const ImVec2 light(middle.x + radius * static_cast<float>(stands.x),
                      middle.y - radius * static_cast<float>(stands.y));
   draw->AddLine(light, middle, kLine, 1.5f);
   draw->AddCircleFilled(light, 6.0f, kAccent, 24);
-  say_dim(tr("light.place", fmt::format("{:.0f}", desk.state.document.light.azimuth_deg),
-             fmt::format("{:.0f}", desk.state.document.light.elevation_deg)));
+  say_dim(tr("light.place", fmt::format("{:.0f}", context.state.document.light.azimuth_deg),
+             fmt::format("{:.0f}", context.state.document.light.elevation_deg)));
   constexpr std::array<const char*, 8> kPresets{"upper_left", "top",        "upper_right", "left",
                                                 "right",      "lower_left", "bottom",      "lower_right"};
   for (std::size_t i = 0; i < kPresets.size(); ++i) {
     const std::string label = tr_name("direction", kPresets[i]);
     if (i != 0 && i != 3 && i != 5) next_in_row(button_width(label));
-    button(desk, label, std::string("light_from ") + kPresets[i], false);
+    button(context, label, std::string("light_from ") + kPresets[i], false);
   }
 }
 
-void draw_styles(const Board& desk) {
-  if (const Command* const style = desk.keys.commands().find("style"))
+void draw_styles(const PanelContext& context) {
+  if (const Command* const style = context.keys.commands().find("style"))
     for (const std::string& name : style->values) {
-      if (ImGui::RadioButton(style_words(name).c_str(), name == desk.state.document.style.name))
-        desk.commands.push_back("style " + name);
-      explain(desk, "style " + name);
+      if (ImGui::RadioButton(style_words(name).c_str(), name == context.state.document.style.name))
+        context.commands.push_back("style " + name);
+      explain(context, "style " + name);
     }
-  bool occlusion = desk.state.document.style.occlusion;
-  if (ImGui::Checkbox(tr("look.dark_hollows").c_str(), &occlusion)) desk.commands.push_back("occlusion");
-  explain(desk, "occlusion");
-  auto strength = static_cast<float>(100.0 * desk.state.document.style.strength);
+  bool occlusion = context.state.document.style.occlusion;
+  if (ImGui::Checkbox(tr("look.dark_hollows").c_str(), &occlusion)) context.commands.push_back("occlusion");
+  explain(context, "occlusion");
+  auto strength = static_cast<float>(100.0 * context.state.document.style.strength);
   if (percent_slider(tr("look.strength"), strength, 120.0f, 200.0f))
-    desk.commands.push_back(fmt::format("strength {:.4g}", strength));
-  draw_shades(desk);
-  draw_blend(desk);
+    context.commands.push_back(fmt::format("strength {:.4g}", strength));
+  draw_shades(context);
+  draw_blend(context);
   ImGui::Separator();
-  draw_evidence(desk);
+  draw_evidence(context);
 }
 
 }  // namespace dubsar::app

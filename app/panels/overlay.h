@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "app/panels/box_page.h"
-#include "app/panels/desk_panels.h"
 #include "app/panels/gallery_page.h"
 #include "app/panels/help_columns.h"
 #include "app/panels/help_page.h"
 #include "app/panels/legend_page.h"
 #include "app/panels/light_ball.h"
+#include "app/panels/window_panels.h"
 #include "app/stage/stage.h"
 
 struct ImGuiContext;

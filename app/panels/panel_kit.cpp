@@ -10,26 +10,27 @@
 
 namespace dubsar::app {
 
-void explain(const Board& desk, const std::string& command) {
+void explain(const PanelContext& context, const std::string& command) {
   if (!ImGui::IsItemHovered()) return;
   const auto [name, argument] = split_command(command);
-  const Command* const known = desk.keys.commands().find(name);
+  const Command* const known = context.keys.commands().find(name);
   if (known == nullptr) return;
   std::string text = tr(known->words);
   if (!argument.empty()) text += ": " + argument_words(*known, argument);
-  const auto keys = desk.keys.keys_for(command);
+  const auto keys = context.keys.keys_for(command);
   if (!keys.empty()) text += "    " + key_words(keys.front());
   ImGui::SetTooltip("%s", text.c_str());
 }
 
 namespace {
 
-bool sized_button(const Board& desk, const std::string& label, const std::string& command, bool active, float width) {
+bool sized_button(const PanelContext& context, const std::string& label, const std::string& command, bool active,
+                  float width) {
   if (active) ImGui::PushStyleColor(ImGuiCol_Text, kAccent);
   const bool pressed = ImGui::Button(label.c_str(), ImVec2(width, 0.0f));
   if (active) ImGui::PopStyleColor();
-  explain(desk, command);
-  if (pressed) desk.commands.push_back(command);
+  explain(context, command);
+  if (pressed) context.commands.push_back(command);
   return pressed;
 }
 
@@ -68,18 +69,19 @@ Caret caret_of(const char* id) {
 
 }  // namespace
 
-bool button(const Board& desk, const std::string& label, const std::string& command, bool active, bool enabled) {
+bool button(const PanelContext& context, const std::string& label, const std::string& command, bool active,
+            bool enabled) {
   ImGui::BeginDisabled(!enabled);
-  const bool pressed = sized_button(desk, label, command, active, 0.0f);
+  const bool pressed = sized_button(context, label, command, active, 0.0f);
   ImGui::EndDisabled();
   return pressed;
 }
 
-bool row_button(const Board& desk, const std::string& label, const std::string& command, bool active) {
+bool row_button(const PanelContext& context, const std::string& label, const std::string& command, bool active) {
   ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
   const float room = ImGui::GetContentRegionAvail().x;
   ImGui::SetWindowFontScale(std::min(1.0f, room / (button_width(label) - ImGui::GetStyle().ItemSpacing.x)));
-  const bool pressed = sized_button(desk, label, command, active, room);
+  const bool pressed = sized_button(context, label, command, active, room);
   ImGui::SetWindowFontScale(1.0f);
   ImGui::PopStyleVar();
   return pressed;

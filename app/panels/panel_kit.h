@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/panels/desk_panels.h"
+#include "app/panels/window_panels.h"
 #include "app/words/text.h"
 
 namespace dubsar::app {
@@ -22,7 +22,7 @@ inline constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGui
                                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                            ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
-struct Board {
+struct PanelContext {
   const PanelState& state;
   const KeyTable& keys;
   std::vector<std::string>& commands;
@@ -30,11 +30,12 @@ struct Board {
 };
 
 /// What a thing does and which key does the same, while the pointer rests on it.
-void explain(const Board& desk, const std::string& command);
+void explain(const PanelContext& context, const std::string& command);
 /// Posts the command when it is pressed.
-bool button(const Board& desk, const std::string& label, const std::string& command, bool active, bool enabled = true);
+bool button(const PanelContext& context, const std::string& label, const std::string& command, bool active,
+            bool enabled = true);
 /// The same in a column of them: as wide as the column, so that all of the line is pressed.
-bool row_button(const Board& desk, const std::string& label, const std::string& command, bool active);
+bool row_button(const PanelContext& context, const std::string& label, const std::string& command, bool active);
 /// A button of text without a frame, as long as its words.
 float button_width(const std::string& label);
 /// Goes on in the same row where so wide a thing has room there, else in the next one.
@@ -59,12 +60,12 @@ bool type_in(const char* id, const std::string& now, std::string& typed, float w
 std::size_t caret_in(const char* id, const std::string& text);
 
 // Drawers, one each.
-void draw_parts(const Board& desk);
-void draw_light(const Board& desk);
-void draw_styles(const Board& desk);
-void draw_measures(const Board& desk);
-void draw_notes(const Board& desk);
-void draw_cuts(const Board& desk);
-void draw_film(const Board& desk);
+void draw_parts(const PanelContext& context);
+void draw_light(const PanelContext& context);
+void draw_styles(const PanelContext& context);
+void draw_measures(const PanelContext& context);
+void draw_notes(const PanelContext& context);
+void draw_cuts(const PanelContext& context);
+void draw_film(const PanelContext& context);
 
 }  // namespace dubsar::app

@@ -63,34 +63,34 @@ void draw_cross(const ImVec2& at, const PanelRect& rect, const ImVec2& corner) {
 
 /// Left sets the place, the wheel goes through the scan, with control it is nearer; the right button makes it lighter
 /// and darker, the middle one moves the picture.
-void use_mouse(const Board& desk, std::size_t which, const SlicePane& pane, const Placed& placed) {
+void use_mouse(const PanelContext& context, std::size_t which, const SlicePane& pane, const Placed& placed) {
   const ImGuiIO& io = ImGui::GetIO();
-  const ScanView& scan = desk.state.document.scan;
+  const ScanView& scan = context.state.document.scan;
   const glm::dvec3 pointed = pane.wanted.mm_at(placed.px(io.MousePos));
   const bool active = ImGui::IsItemActive(), shift = io.KeyShift;
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
-    desk.commands.push_back(fmt::format("slice_large {}", kSliceNames[which]));
+    context.commands.push_back(fmt::format("slice_large {}", kSliceNames[which]));
   if (active && io.MouseDown[0] && !shift &&
       glm::distance(pane.wanted.px_at(scan.cursor_mm), pane.wanted.px_at(pointed)) > kSamePx)
-    desk.commands.push_back("slice_at " + place_text(pointed));
+    context.commands.push_back("slice_at " + place_text(pointed));
   const glm::dvec2 moved(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y));
   if (active && moved != glm::dvec2(0.0) && (io.MouseDown[2] || (io.MouseDown[0] && shift))) {
     const double mm = pane.wanted.mm_per_px / static_cast<double>(placed.scale);
-    desk.commands.push_back(
+    context.commands.push_back(
         "slice_centre " + place_text(scan.centre_mm - mm * (moved.x * pane.wanted.right + moved.y * pane.wanted.down)));
   }
   if (active && moved != glm::dvec2(0.0) && io.MouseDown[1]) {
-    const double black = desk.state.slices.black, white = desk.state.slices.white;
+    const double black = context.state.slices.black, white = context.state.slices.white;
     const double half = 0.5 * (white - black) * std::exp(moved.x / kContrastPx);
     const double middle = 0.5 * (white + black) + (white - black) * moved.y / kContrastPx;
-    desk.commands.push_back(fmt::format("slice_grey {:.6g} {:.6g}", middle - half, middle + half));
+    context.commands.push_back(fmt::format("slice_grey {:.6g} {:.6g}", middle - half, middle + half));
   }
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f) {
     const auto notches = static_cast<double>(io.MouseWheel);
-    desk.commands.push_back(io.KeyCtrl
-                                ? fmt::format("slice_zoom {:.6g}",
-                                              std::clamp(100.0 * scan.zoom * std::pow(kNearer, notches), 20.0, 20000.0))
-                                : fmt::format("slice_step {} {:.6g}", kSliceNames[which], kWheelMm * notches));
+    context.commands.push_back(
+        io.KeyCtrl ? fmt::format("slice_zoom {:.6g}",
+                                 std::clamp(100.0 * scan.zoom * std::pow(kNearer, notches), 20.0, 20000.0))
+                   : fmt::format("slice_step {} {:.6g}", kSliceNames[which], kWheelMm * notches));
   }
 }
 
@@ -115,25 +115,25 @@ void draw_labels(const SlicePane& pane, std::size_t which, const ScanView& scan,
   draw->AddText(ImVec2(end.x - 0.5f * (length + size.x), end.y - size.y - 2), kText, bar.c_str());
 }
 
-void draw_head(const Board& desk) {
-  const SlicePanelState& slices = desk.state.slices;
+void draw_head(const PanelContext& context) {
+  const SlicePanelState& slices = context.state.slices;
   for (const char* name : {"all", "x", "y", "z", "free"}) {
-    const int large = desk.state.document.scan.large;
+    const int large = context.state.document.scan.large;
     const bool active =
         name == (large == 0 ? std::string_view("all") : kSliceNames[static_cast<std::size_t>(large - 1)]);
-    button(desk, tr_name("which", name), std::string("slice_large ") + name, active);
+    button(context, tr_name("which", name), std::string("slice_large ") + name, active);
     ImGui::SameLine();
   }
-  button(desk, tr("slice.here"), "tool slice", desk.state.ui.tool == "slice");
+  button(context, tr("slice.here"), "tool slice", context.state.ui.tool == "slice");
   ImGui::SameLine();
-  button(desk, tr("slice.turn"), "slice_turn", false);
+  button(context, tr("slice.turn"), "slice_turn", false);
   ImGui::SameLine();
-  button(desk, "+", "slice_nearer", false);
+  button(context, "+", "slice_nearer", false);
   ImGui::SameLine();
-  button(desk, "-", "slice_farther", false);
+  button(context, "-", "slice_farther", false);
   ImGui::SameLine();
-  button(desk, tr("slice.grey"), "slice_grey auto", false);
-  const glm::dvec3& at = desk.state.document.scan.cursor_mm;
+  button(context, tr("slice.grey"), "slice_grey auto", false);
+  const glm::dvec3& at = context.state.document.scan.cursor_mm;
   std::string line = fmt::format("{:.2f}; {:.2f}; {:.2f} mm", at.x, at.y, at.z);
   if (slices.value) line += "   " + tr("slice.value", fmt::format("{:.4g}", *slices.value));
   ImGui::TextColored(ImColor(kDim), "%s", local_figures(std::move(line)).c_str());
@@ -158,15 +158,15 @@ std::array<PanelRect, kSlices> slice_rects(float width, float height, int large)
   return out;
 }
 
-void draw_slices(const Board& desk) {
-  const float panel = slices_width(desk.width);
+void draw_slices(const PanelContext& context) {
+  const float panel = slices_width(context.width);
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0f);
-  ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - panel - kGap, kTopLine + kGap));
-  ImGui::SetNextWindowSize(ImVec2(panel + kGap - 2.0f, desk.height - kTopLine - kStrip - 2 * kGap));
+  ImGui::SetNextWindowPos(ImVec2(context.width - kTab - panel - kGap, kTopLine + kGap));
+  ImGui::SetNextWindowSize(ImVec2(panel + kGap - 2.0f, context.height - kTopLine - kStrip - 2 * kGap));
   ImGui::Begin("slices", nullptr, kFixed | ImGuiWindowFlags_NoScrollWithMouse);
-  draw_head(desk);
-  const SlicePanelState& slices = desk.state.slices;
-  const auto rects = slice_rects(desk.width, desk.height, desk.state.document.scan.large);
+  draw_head(context);
+  const SlicePanelState& slices = context.state.slices;
+  const auto rects = slice_rects(context.width, context.height, context.state.document.scan.large);
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   for (std::size_t i = 0; i < kSlices; ++i) {
     const PanelRect& rect = rects[i];
@@ -179,22 +179,22 @@ void draw_slices(const Board& desk) {
     ImGui::InvisibleButton(
         "slice", ImVec2(rect.width, rect.height),
         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
-    use_mouse(desk, i, pane, placed);
+    use_mouse(context, i, pane, placed);
     ImGui::PopID();
     draw->PushClipRect(corner, end, true);
     draw->AddRectFilled(corner, end, kNothing);
     draw_picture(pane, placed);
-    draw_cross(placed.at(pane.wanted.px_at(desk.state.document.scan.cursor_mm)), rect, corner);
-    draw_labels(pane, i, desk.state.document.scan, rect, placed);
+    draw_cross(placed.at(pane.wanted.px_at(context.state.document.scan.cursor_mm)), rect, corner);
+    draw_labels(pane, i, context.state.document.scan, rect, placed);
     draw->PopClipRect();
   }
   const std::string& words = !slices.note.empty() ? slices.note
                              : !slices.scan       ? tr("slice.no_scan")
                                                   : tr("slice.inferred");
   ImGui::SetCursorScreenPos(
-      ImVec2(rects[2].shown() ? rects[2].x : desk.width - kTab - panel, desk.height - kStrip - kGap - kFoot + 2));
+      ImVec2(rects[2].shown() ? rects[2].x : context.width - kTab - panel, context.height - kStrip - kGap - kFoot + 2));
   say_fitted(slices.note.empty() && slices.scan ? kPatch : kDim, words,
-             desk.width - kTab - 2.0f * kGap - ImGui::GetCursorScreenPos().x);
+             context.width - kTab - 2.0f * kGap - ImGui::GetCursorScreenPos().x);
   ImGui::End();
   ImGui::PopStyleVar();
 }

@@ -7,8 +7,8 @@
 
 #include <set>
 
-#include "app/panels/desk_panels.h"
 #include "app/panels/panel_kit.h"
+#include "app/panels/window_panels.h"
 #include "display/render/shading.h"
 
 namespace dubsar::app {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "app/panels/desk_panels.h"
 #include "app/panels/overlay.h"
 #include "app/panels/panel_font.h"
+#include "app/panels/window_panels.h"
 
 namespace dubsar::app {
 namespace {

@@ -7,12 +7,12 @@
 #include <fstream>
 #include <regex>
 
-#include "app/panels/desk_panels.h"
 #include "app/panels/help_page.h"
 #include "app/panels/legend_page.h"
 #include "app/panels/overlay.h"
 #include "app/panels/panel_font.h"
 #include "app/panels/state_page.h"
+#include "app/panels/window_panels.h"
 #include "app/words/language.h"
 #include "core/base/files/atomic_file.h"
 #include "display/render/shading.h"
@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// All names are QXZ.
-PanelState full_desk() {
+PanelState full_window() {
   PanelState out;
   out.line = {.title = "QXZ.exa", .display = "QXZ", .language = "zz", .side = "obverse", .undo = "a", .redo = "b"};
   Document& document = out.document;
@@ -145,7 +145,7 @@ constexpr std::array<const char*, 9> kDrawers{"",      "parts", "light",  "style
 
 TEST_F(DrawnWords, EveryDrawerSpeaksTheLanguageAndHasRoomForIt) {
   speak_made_up();
-  PanelState state = full_desk();
+  PanelState state = full_window();
   for (const char* const drawer : kDrawers) {
     state.ui.drawer = drawer;
     check(panels(state, 1600.0f, 900.0f), std::string("drawer ") + drawer, 1600.0f);
@@ -154,7 +154,7 @@ TEST_F(DrawnWords, EveryDrawerSpeaksTheLanguageAndHasRoomForIt) {
 
 TEST_F(DrawnWords, EmptyDrawersSayWhatToDo) {
   speak_made_up();
-  PanelState state = full_desk();
+  PanelState state = full_window();
   state.document.measures.clear();
   state.document.notes.clear();
   state.document.keyframes.clear();
@@ -166,7 +166,7 @@ TEST_F(DrawnWords, EmptyDrawersSayWhatToDo) {
 
 TEST_F(DrawnWords, FilesAndCommandsAreAskedForInTheLanguage) {
   speak_made_up();
-  PanelState state = full_desk();
+  PanelState state = full_window();
   state.ui.panels = false;
   state.ui.choosing.open = true;
   state.files.recent = {{"/QXZ/QXZ.exa", true}, {"/QXZ/QXZ.ply", false}};
@@ -206,7 +206,7 @@ TEST_F(DrawnWords, LegendsSpeakTheLanguage) {
 TEST_F(DrawnWords, GermanAndEnglishFitTheSmallestWindow) {
   for (const std::string language : {"en", "de"}) {
     ASSERT_TRUE(use_language(language));
-    PanelState state = full_desk();
+    PanelState state = full_window();
     for (const auto& [width, height] : {std::pair{1280.0f, 720.0f}, std::pair{960.0f, 540.0f}})
       for (const char* const drawer : kDrawers) {
         state.ui.drawer = drawer;

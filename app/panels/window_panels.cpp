@@ -1,4 +1,4 @@
-#include "app/panels/desk_panels.h"
+#include "app/panels/window_panels.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -25,45 +25,45 @@ void begin(const char* name, float x, float y, float width, float height) {
   ImGui::Begin(name, nullptr, kFixed);
 }
 
-void draw_line(const Board& desk) {
-  begin("line", 0.0f, 0.0f, desk.width, kTopLine);
+void draw_line(const PanelContext& context) {
+  begin("line", 0.0f, 0.0f, context.width, kTopLine);
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(desk.state.line.title.c_str());
-  const FilesState& files = desk.state.files;
+  ImGui::TextUnformatted(context.state.line.title.c_str());
+  const FilesState& files = context.state.files;
   if (files.names.size() > 1) {
     ImGui::SameLine(0.0f, 12.0f);
-    button(desk, tr("files.position", files.shown + 1, files.names.size()), "next_file", false);
+    button(context, tr("files.position", files.shown + 1, files.names.size()), "next_file", false);
   }
-  if (!desk.state.line.side.empty()) {
+  if (!context.state.line.side.empty()) {
     ImGui::SameLine(0.0f, 24.0f);
-    ImGui::TextColored(ImColor(kDim), "%s", tr_name("side", desk.state.line.side).c_str());
+    ImGui::TextColored(ImColor(kDim), "%s", tr_name("side", context.state.line.side).c_str());
   }
-  const std::string display = "F2  " + desk.state.line.display;
+  const std::string display = "F2  " + context.state.line.display;
   const float right = button_width(tr("top.open")) + button_width(tr("top.undo")) + button_width(tr("top.redo")) +
-                      button_width(display) + button_width(desk.state.line.language) + button_width("?");
-  ImGui::SameLine(std::max(ImGui::GetCursorPosX() + 8.0f, desk.width - right - 4.0f));
-  button(desk, tr("top.open"), "open", desk.state.ui.choosing.open);
+                      button_width(display) + button_width(context.state.line.language) + button_width("?");
+  ImGui::SameLine(std::max(ImGui::GetCursorPosX() + 8.0f, context.width - right - 4.0f));
+  button(context, tr("top.open"), "open", context.state.ui.choosing.open);
   ImGui::SameLine();
-  button(desk, tr("top.undo"), "undo", false, !desk.state.line.undo.empty());
+  button(context, tr("top.undo"), "undo", false, !context.state.line.undo.empty());
   ImGui::SameLine();
-  button(desk, tr("top.redo"), "redo", false, !desk.state.line.redo.empty());
+  button(context, tr("top.redo"), "redo", false, !context.state.line.redo.empty());
   ImGui::SameLine();
-  button(desk, display, "next_display", false);
+  button(context, display, "next_display", false);
   ImGui::SameLine();
-  if (!desk.state.line.language.empty()) {
-    button(desk, desk.state.line.language, "ui_language", false);
+  if (!context.state.line.language.empty()) {
+    button(context, context.state.line.language, "ui_language", false);
     ImGui::SameLine();
   }
-  button(desk, "?", "help", false);
+  button(context, "?", "help", false);
   ImGui::End();
 }
 
-void draw_scale_bar(const Board& desk) {
-  if (desk.state.mm_per_px <= 0.0) return;
-  const double mm = scale_bar_mm(desk.state.mm_per_px, kLongestBarPx);
-  const auto length = static_cast<float>(mm / desk.state.mm_per_px);
+void draw_scale_bar(const PanelContext& context) {
+  if (context.state.mm_per_px <= 0.0) return;
+  const double mm = scale_bar_mm(context.state.mm_per_px, kLongestBarPx);
+  const auto length = static_cast<float>(mm / context.state.mm_per_px);
   const std::string label = local_figures(fmt::format("{:g} mm", mm));
-  const float y = desk.height - 0.5f * kStrip, right = desk.width - 16.0f;
+  const float y = context.height - 0.5f * kStrip, right = context.width - 16.0f;
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   const float left = right - length;
   const ImU32 color = ImGui::GetColorU32(ImGuiCol_Text);
@@ -73,45 +73,46 @@ void draw_scale_bar(const Board& desk) {
   draw->AddText(ImVec2(0.5f * (left + right - size.x), y - size.y + 2), color, label.c_str());
 }
 
-void draw_strip(const Board& desk) {
-  begin("strip", 0.0f, desk.height - kStrip, desk.width, kStrip);
+void draw_strip(const PanelContext& context) {
+  begin("strip", 0.0f, context.height - kStrip, context.width, kStrip);
   ImGui::SetCursorPosY(0.5f * (kStrip - ImGui::GetFrameHeight()));
   for (std::size_t i = 0; i < kSideNames.size(); ++i) {
     const std::string name(kSideNames[i]);
-    button(desk, tr_name("side", name), "side " + name, desk.state.line.side == name);
+    button(context, tr_name("side", name), "side " + name, context.state.line.side == name);
     ImGui::SameLine(0.0f, i == 3 ? 20.0f : -1.0f);
   }
-  if (can_unpack(desk.state.document)) {
-    auto percent = static_cast<float>(100.0 * desk.state.document.unpack);
+  if (can_unpack(context.state.document)) {
+    auto percent = static_cast<float>(100.0 * context.state.document.unpack);
     ImGui::SameLine(0.0f, 28.0f);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(tr("strip.unpack").c_str());
     ImGui::SameLine();
-    if (percent_slider("##unpack", percent, std::clamp(desk.width - ImGui::GetCursorPosX() - kBarRoom, 60.0f, 220.0f)))
-      desk.commands.push_back(fmt::format("unpack {:.4g}", percent));
-    explain(desk, "unpack_more");
+    if (percent_slider("##unpack", percent,
+                       std::clamp(context.width - ImGui::GetCursorPosX() - kBarRoom, 60.0f, 220.0f)))
+      context.commands.push_back(fmt::format("unpack {:.4g}", percent));
+    explain(context, "unpack_more");
   }
-  draw_scale_bar(desk);
+  draw_scale_bar(context);
   ImGui::End();
 }
 
-void draw_tools(const Board& desk) {
+void draw_tools(const PanelContext& context) {
   constexpr std::array<const char*, 8> kTools{"turn", "distance", "angle", "depth", "profile", "note", "line", "slice"};
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("tools", 0.0f, kTopLine + kGap, kToolsWidth,
         row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const std::string name : kTools)
-    row_button(desk, tr_name("tool", name), "tool " + name, desk.state.ui.tool == name);
+    row_button(context, tr_name("tool", name), "tool " + name, context.state.ui.tool == name);
   ImGui::End();
 }
 
-void draw_drawers(const Board& desk) {
+void draw_drawers(const PanelContext& context) {
   struct Row {
     const char* name;
-    void (*draw)(const Board&);
+    void (*draw)(const PanelContext&);
   };
   std::vector<Row> rows;
-  if (desk.state.document.parts.size() > 1) rows.push_back({"parts", draw_parts});
+  if (context.state.document.parts.size() > 1) rows.push_back({"parts", draw_parts});
   rows.push_back({"light", draw_light});
   rows.push_back({"style", draw_styles});
   rows.push_back({"measures", draw_measures});
@@ -120,28 +121,28 @@ void draw_drawers(const Board& desk) {
   rows.push_back({"slices", nullptr});
   rows.push_back({"film", draw_film});
   const float row = ImGui::GetFrameHeightWithSpacing();
-  begin("drawers", desk.width - kTab, kTopLine + kGap, kTab,
+  begin("drawers", context.width - kTab, kTopLine + kGap, kTab,
         row * static_cast<float>(rows.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const Row& each : rows)
-    row_button(desk, tr_name("panel", each.name), std::string("drawer ") + each.name,
-               desk.state.ui.drawer == each.name);
+    row_button(context, tr_name("panel", each.name), std::string("drawer ") + each.name,
+               context.state.ui.drawer == each.name);
   ImGui::End();
   for (const Row& each : rows) {
-    if (desk.state.ui.drawer != each.name) continue;
+    if (context.state.ui.drawer != each.name) continue;
     if (each.draw == nullptr) {
-      draw_slices(desk);
+      draw_slices(context);
       continue;
     }
     // What the window has no room for is reached with the wheel, or the bar at its side.
-    const float most = desk.height - kTopLine - kStrip - 2.0f * kGap;
-    ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - 4.0f, kTopLine + kGap), ImGuiCond_Always, ImVec2(1.0f, 0.0f));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(kDrawer, 0.0f),
-                                        ImVec2(std::max(kDrawer + kScrollBar, desk.width - kTab - kToolsWidth), most));
+    const float most = context.height - kTopLine - kStrip - 2.0f * kGap;
+    ImGui::SetNextWindowPos(ImVec2(context.width - kTab - 4.0f, kTopLine + kGap), ImGuiCond_Always, ImVec2(1.0f, 0.0f));
+    ImGui::SetNextWindowSizeConstraints(
+        ImVec2(kDrawer, 0.0f), ImVec2(std::max(kDrawer + kScrollBar, context.width - kTab - kToolsWidth), most));
     ImGui::Begin(each.name, nullptr, (kFixed & ~ImGuiWindowFlags_NoScrollbar) | ImGuiWindowFlags_AlwaysAutoResize);
     const ImVec2 corner = ImGui::GetCursorPos();
     ImGui::Dummy(ImVec2(kDrawer - 2.0f * ImGui::GetStyle().WindowPadding.x, 0.0f));
     ImGui::SetCursorPos(corner);
-    each.draw(desk);
+    each.draw(context);
     ImGui::End();
   }
 }
@@ -157,7 +158,7 @@ double scale_bar_mm(double mm_per_px, double most_px) {
 
 void draw_panels(const PanelState& state, const KeyTable& keys, float width, float height,
                  std::vector<std::string>& commands) {
-  const Board desk{state, keys, commands, width, height};
+  const PanelContext context{state, keys, commands, width, height};
   ImGui::PushStyleColor(ImGuiCol_Text, kText);
   ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(0x1f, 0x21, 0x25, 0xeb));
   ImGui::PushStyleColor(ImGuiCol_PopupBg, IM_COL32(0x1f, 0x21, 0x25, 0xf5));
@@ -177,11 +178,11 @@ void draw_panels(const PanelState& state, const KeyTable& keys, float width, flo
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(16.0f, 16.0f));
   ImGui::PushStyleVar(ImGuiStyleVar_ScrollbarSize, kScrollBar);
   if (state.ui.panels) {
-    draw_line(desk);
+    draw_line(context);
     if (state.files.has_surface) {
-      draw_tools(desk);
-      draw_strip(desk);
-      draw_drawers(desk);
+      draw_tools(context);
+      draw_strip(context);
+      draw_drawers(context);
     }
   }
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0f);
