@@ -8,7 +8,7 @@
 
 #include "core/base/system/clock.h"
 #include "devices/head_tracker/head_sample.h"
-#include "devices/spacemouse/puck_sample.h"
+#include "devices/spacemouse/spacemouse_sample.h"
 #include "devices/touch/touch_sample.h"
 #include "devices/transport/transport.h"
 
@@ -26,7 +26,7 @@ struct StereoSample {
   const lmc1::Calibration* calibration = nullptr;
 };
 
-using DeviceSample = std::variant<PuckSample, HeadSample, StereoSample, TouchSample>;
+using DeviceSample = std::variant<SpaceMouseSample, HeadSample, StereoSample, TouchSample>;
 
 inline TimestampNs time_of(const DeviceSample& sample) {
   return std::visit([](const auto& s) { return s.time; }, sample);

@@ -15,7 +15,7 @@
 #include "devices/leap/leap_driver.h"
 #include "devices/leap/simulated_leap.h"
 #include "devices/looking_glass/calibration_pages.h"
-#include "devices/spacemouse/simulated_pucks.h"
+#include "devices/spacemouse/simulated_spacemice.h"
 #include "devices/spacemouse/spacenav_protocol.h"
 #include "devices/touch/simulated_touch.h"
 #include "devices/touch/touch_protocol.h"
@@ -42,7 +42,7 @@ constexpr DeviceId ordinary(std::uint16_t product) {
           .instead = "none needed: the system uses it"};
 }
 // spacenavd src/dev.c: the table of devices with their flags, and the black list. Vendor 256f makes little else than
-// six-axis pucks: products of his that are not known are taken for one.
+// six-axis 3D mice: products of his that are not known are taken for one.
 constexpr std::array kSpaceMouseIds{
     space_mouse(0xc603), space_mouse(0xc605),
     space_mouse(0xc606), space_mouse(0xc621),
@@ -201,7 +201,7 @@ std::vector<DriverEntry> make_table() {
        .bus = Bus::kHid,
        .ids = kSpaceMouseIds,
        .bluetooth_vendor = 0x256f,
-       .gives = Gives::kPuck,
+       .gives = Gives::kSpaceMouse,
        .input = {.source = "spacemouse", .taken_unasked = true},
        .open = open_first_hid,
        .drive = drive<SpaceMouseProtocol>,
@@ -209,7 +209,7 @@ std::vector<DriverEntry> make_table() {
       {.name = "spacenav",
        .summary = "spacenavd daemon",
        .bus = Bus::kUnixSocket,
-       .gives = Gives::kPuck,
+       .gives = Gives::kSpaceMouse,
        .input = {.source = "spacenav", .taken_unasked = true, .instead_of = "spacemouse"},  // the daemon holds it
        .open = open_spacenav,
        .drive = drive<SpacenavProtocol>,

@@ -20,7 +20,7 @@ enum class Bus { kHid, kUsb, kInput, kVideo, kUnixSocket, kUdp, kTcp, kService }
 /// What a device gives, and so which source reads it.
 enum class Gives {
   kNothing,  ///< no input: calibrations
-  kPuck,
+  kSpaceMouse,
   kHead,
   kStereoPictures,  ///< hands are found in them
   kPictures,        ///< faces are found in them

@@ -15,7 +15,7 @@
 
 namespace dubsar {
 
-/// What a person's hand does to the cap of a puck: -1..1 each, screen axes.
+/// What a person's hand does to the cap of a SpaceMouse: -1..1 each, screen axes.
 struct CapDeflection {
   glm::dvec3 push{0.0}, twist{0.0};
   bool operator==(const CapDeflection&) const = default;
@@ -39,7 +39,7 @@ class SimulatedPerson {
 
   /// When that was which is seen now: a device's latency ago.
   virtual TimestampNs time() const = 0;
-  /// Of the hand that holds a puck; nothing: it is not to be seen.
+  /// Of the hand that holds a SpaceMouse; nothing: it is not to be seen.
   virtual CapDeflection cap() const = 0;
   /// Between the eyes, facing along the screen's axis; nothing while an eye is not seen.
   virtual std::optional<Pose> head() const = 0;

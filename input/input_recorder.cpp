@@ -13,7 +13,8 @@ constexpr std::size_t kMostPending = 4096;  // frames; 45 s of two hands at 90 H
 
 /// Whether both say the same, events aside.
 bool same(const InputFrame& a, const InputFrame& b) {
-  return a.time == b.time && a.puck == b.puck && a.hands == b.hands && a.heads == b.heads && a.grips == b.grips;
+  return a.time == b.time && a.space_mouse == b.space_mouse && a.hands == b.hands && a.heads == b.heads &&
+         a.grips == b.grips;
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ class ReplaySource final : public InputSource {
     for (InputEvent& event : newest.events) event.time += shift_;
     for (HandFrame& hand : newest.hands) hand.time += shift_;
     for (HeadFrame& head : newest.heads) head.time += shift_;
-    if (newest.puck) newest.puck->time += shift_;
+    if (newest.space_mouse) newest.space_mouse->time += shift_;
     return Freshness::kNew;
   }
 

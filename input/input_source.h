@@ -39,11 +39,11 @@ struct HeadFrame {
   bool operator==(const HeadFrame&) const = default;
 };
 
-/// Deflection of a six-axis puck, -1..1 each, axes of the screen frame; it stays until the next report.
-struct PuckMotion {
+/// Deflection of a six-axis 3D mouse, -1..1 each, axes of the screen frame; it stays until the next report.
+struct SpaceMouseMotion {
   TimestampNs time = 0;
   glm::dvec3 push{0.0}, twist{0.0};
-  bool operator==(const PuckMotion&) const = default;
+  bool operator==(const SpaceMouseMotion&) const = default;
 };
 
 /// What a source knows at one moment. Poses are the newest ones; events and touches are all since the last poll, oldest
@@ -51,7 +51,7 @@ struct PuckMotion {
 struct InputFrame {
   TimestampNs time = 0;  ///< device time of the newest thing in here
   std::vector<InputEvent> events;
-  std::optional<PuckMotion> puck;
+  std::optional<SpaceMouseMotion> space_mouse;
   std::vector<HandFrame> hands;  ///< screen frame, everybody's, at most kMaxHands
   std::vector<HeadFrame> heads;  ///< everybody's
   HandGrips grips{};             ///< of who wears a headset; while one is active, `hands` are only shown

@@ -53,7 +53,7 @@ const InputFrame& InputMixer::poll(TimestampNs now) {
     merged_.time = std::max(merged_.time, entry.frame.time);
     for (std::size_t side = 0; side < 2; ++side)
       if (!merged_.grips[side].active) merged_.grips[side] = entry.frame.grips[side];
-    if (entry.frame.puck && !merged_.puck) merged_.puck = entry.frame.puck;
+    if (entry.frame.space_mouse && !merged_.space_mouse) merged_.space_mouse = entry.frame.space_mouse;
   }
   std::stable_sort(merged_.events.begin(), merged_.events.end(),
                    [](const InputEvent& a, const InputEvent& b) { return a.time < b.time; });

@@ -21,8 +21,8 @@ struct SourceState {
 /// Any thread: what it calls of the sources is called by one at a time.
 class InputMixer {
  public:
-  /// Adds a started source. Lower ranks, and earlier ones of the same rank, have priority for hands, heads and puck;
-  /// events of all are merged in time.
+  /// Adds a started source. Lower ranks, and earlier ones of the same rank, have priority for hands, heads and
+  /// SpaceMouse; events of all are merged in time.
   void add(std::unique_ptr<InputSource> source, int rank = 0);
   /// Takes this source out and ends it; false when it is not there. Nobody who polls waits for its end.
   bool remove(const InputSource* source);

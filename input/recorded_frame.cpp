@@ -232,8 +232,9 @@ RecordedFrame read_frame(LineReader& read, const json& object) {
   for (const json& item : read.list(object, "heads", 16)) out.frame.heads.push_back(read_head(read, item));
   for (const json& item : read.list(object, "grips", 2)) read_grip(read, item, out.frame.grips);
   if (object.contains("puck")) {
-    const json& puck = object.at("puck");
-    out.frame.puck = PuckMotion{read.time(puck), read.vector(puck, "push"), read.vector(puck, "twist")};
+    const json& space_mouse = object.at("puck");
+    out.frame.space_mouse =
+        SpaceMouseMotion{read.time(space_mouse), read.vector(space_mouse, "push"), read.vector(space_mouse, "twist")};
   }
   return out;
 }
@@ -248,8 +249,10 @@ std::string record_line(const RecordedFrame& recorded) {
   for (const HeadFrame& head : frame.heads) out["heads"].push_back(head_json(head));
   for (std::size_t side = 0; side < frame.grips.size(); ++side)
     if (frame.grips[side].active) out["grips"].push_back(grip_json(side, frame.grips[side]));
-  if (frame.puck)
-    out["puck"] = {{"t", frame.puck->time}, {"push", numbers(frame.puck->push)}, {"twist", numbers(frame.puck->twist)}};
+  if (frame.space_mouse)
+    out["puck"] = {{"t", frame.space_mouse->time},
+                   {"push", numbers(frame.space_mouse->push)},
+                   {"twist", numbers(frame.space_mouse->twist)}};
   return dump_json(out);
 }
 

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-json to_json(const PuckSample& sample) {
+json to_json(const SpaceMouseSample& sample) {
   return {{"time_s", 1e-9 * static_cast<double>(sample.time)},
           {"translation", numbers(sample.translation)},
           {"rotation", numbers(sample.rotation)},

@@ -150,7 +150,7 @@ std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys,
   std::vector<HelpSection> out;
   if (listens(Control::kMouse)) out.push_back(mouse_section(mapping.mouse));
   if (there.more && listens(Control::kHands)) out.push_back(hand_section(mapping.hands));
-  if (there.more && listens(Control::kPuck))
+  if (there.more && listens(Control::kSpaceMouse))
     out.push_back(
         {tr("help.puck"), {{tr("help.push"), tr("help.push_does")}, {tr("help.twist"), tr("help.twist_does")}}});
   if (there.touch && listens(Control::kMouse)) out.push_back(touch_section(mapping.mouse));

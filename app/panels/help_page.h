@@ -21,13 +21,13 @@ struct HelpSection {
 
 /// What there is to steer with, and to look at, besides mouse, keyboard and a plain monitor.
 struct HelpDevices {
-  bool more = true;      ///< devices that follow hands or heads, or have a puck
+  bool more = true;      ///< devices that follow hands or heads, or have a SpaceMouse
   bool two_eyes = true;  ///< the display has a view for each eye
   bool touch = false;    ///< a touch panel
 };
 
-/// Sections for the mouse, hands and puck of a mapping, and for all commands that have keys. Sections without a row are
-/// left out, and what needs a device that is not there.
+/// Sections for the mouse, hands and SpaceMouse of a mapping, and for all commands that have keys. Sections without a
+/// row are left out, and what needs a device that is not there.
 std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys, const HelpDevices& there = {});
 
 }  // namespace dubsar::app

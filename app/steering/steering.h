@@ -50,7 +50,8 @@ class Steering {
   void run(const Clock& clock);
   void stop();
 
-  /// Keys of scripts, recordings and pucks that went down since the last call; those of a window do not come this way.
+  /// Keys of scripts, recordings and SpaceMice that went down since the last call; those of a window do not come this
+  /// way.
   std::vector<InputEvent> take_keys();
   /// What fingers on touch panels did since the last call; whoever knows where the window is places them, and puts what
   /// comes of it back.

@@ -119,7 +119,7 @@ class Viewer final {
   /// An event that waits for its turn.
   struct Queued {
     InputEvent event;
-    bool of_source = false;  ///< a key of a script, a recording or a puck, which no panel or tool takes
+    bool of_source = false;  ///< a key of a script, a recording or a SpaceMouse, which no panel or tool takes
   };
   struct Input {
     WindowEvents mouse;  ///< of the window, on its way to the source of that name

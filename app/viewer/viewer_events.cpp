@@ -49,7 +49,7 @@ void Viewer::use(Queued next, TimestampNs now) {
     if (tool != *took) tool->let_go();
 }
 
-/// Of a script, a recording or a puck, or one that neither a panel nor a tool took.
+/// Of a script, a recording or a SpaceMouse, or one that neither a panel nor a tool took.
 void Viewer::use_key(const InputEvent& event, bool of_source) {
   if (event.kind != EventKind::kKey) return;
   const std::string text = said_.keys->command_for(key_chord(event), *editor_);

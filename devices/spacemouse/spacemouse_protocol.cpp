@@ -118,7 +118,7 @@ bool SpaceMouseProtocol::accept(std::span<const std::byte> report, TimestampNs n
   return true;
 }
 
-std::optional<PuckSample> SpaceMouseProtocol::newest() {
+std::optional<SpaceMouseSample> SpaceMouseProtocol::newest() {
   if (!std::exchange(changed_, false)) return std::nullopt;
   return sample_;
 }

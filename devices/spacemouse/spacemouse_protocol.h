@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/system/clock.h"
-#include "devices/spacemouse/puck_sample.h"
+#include "devices/spacemouse/spacemouse_sample.h"
 #include "devices/transport/transport.h"
 
 namespace dubsar {
@@ -46,7 +46,7 @@ SpaceMouseAxes spacemouse_axes(UsbId id) noexcept;
 /// For Driver: puts the parts together and lights the ring.
 class SpaceMouseProtocol {
  public:
-  using Sample = PuckSample;
+  using Sample = SpaceMouseSample;
   Result<void> start(Transport& transport, TimestampNs now);
   Result<void> keep_up(Transport&, TimestampNs) { return {}; }
   bool accept(std::span<const std::byte> report, TimestampNs now);

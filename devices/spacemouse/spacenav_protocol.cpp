@@ -125,7 +125,7 @@ void SpacenavProtocol::apply(const SpacenavEvent& event, TimestampNs now) {
   if (event.kind == SpacenavEvent::Kind::kOther) return;
   if (event.kind == SpacenavEvent::Kind::kDevice) {
     if (!event.removed) return;
-    sample_.buttons = 0;  // a puck that is gone pushes nothing
+    sample_.buttons = 0;  // a SpaceMouse that is gone pushes nothing
     let_go(now);
     return;
   }
@@ -142,7 +142,7 @@ void SpacenavProtocol::apply(const SpacenavEvent& event, TimestampNs now) {
   changed_ = true;
 }
 
-std::optional<PuckSample> SpacenavProtocol::newest() {
+std::optional<SpaceMouseSample> SpacenavProtocol::newest() {
   if (!std::exchange(changed_, false)) return std::nullopt;
   return sample_;
 }

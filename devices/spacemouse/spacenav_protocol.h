@@ -17,7 +17,8 @@ inline constexpr const char* kSpacenavSocket = "/var/run/spnav.sock";
 /// Full deflection: the daemon scales what the kernel says of an axis to +-500 (src/dev_usb_linux.c); the sensitivity
 /// that its user has set comes on top.
 inline constexpr int kSpacenavFullScale = 500;
-/// Longest time that a deflection holds without a word from the daemon, which tells every change of a puck's axes.
+/// Longest time that a deflection holds without a word from the daemon, which tells every change of a SpaceMouse's
+/// axes.
 inline constexpr TimestampNs kSpacenavHoldsNs = 1'000'000'000;
 
 struct SpacenavEvent {
@@ -45,7 +46,7 @@ std::vector<std::byte> spacenav_hello(std::uint8_t version);
 /// For Driver over open_unix_stream(): finds the events in the byte stream, with or without the answer to the greeting.
 class SpacenavProtocol {
  public:
-  using Sample = PuckSample;
+  using Sample = SpaceMouseSample;
   Result<void> start(Transport& transport, TimestampNs now);
   /// A deflection ends when the daemon has been silent for kSpacenavHoldsNs.
   Result<void> keep_up(Transport&, TimestampNs now);

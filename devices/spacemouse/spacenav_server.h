@@ -1,5 +1,5 @@
 #pragma once
-// The daemon's side of spacenavd's socket without I/O: one client and one made-up puck, for simulated daemons.
+// The daemon's side of spacenavd's socket without I/O: one client and one made-up SpaceMouse, for simulated daemons.
 
 #include <array>
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace dubsar {
 
 class SpacenavServerSide {
  public:
-  /// Takes what the client wrote, cut anywhere, and gives what the daemon answers: the version; the puck's name, path,
-  /// axes, buttons, numbers and type; settings as they were set, or their defaults.
+  /// Takes what the client wrote, cut anywhere, and gives what the daemon answers: the version; the SpaceMouse's name,
+  /// path, axes, buttons, numbers and type; settings as they were set, or their defaults.
   std::vector<std::byte> accept(std::span<const std::byte> bytes);
   /// The bytes of an event, empty when the client has masked its kind.
   std::vector<std::byte> tell(const SpacenavEvent& event) const;

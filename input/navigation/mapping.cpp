@@ -177,13 +177,13 @@ Result<Mapping> read_mapping(const json& object, const std::string& where) {
     out.keys[item.key()] = command;
   }
   DUBSAR_TRY(keys.finish());
-  JsonFields puck(object.at("puck"), where + ": puck");
-  out.puck.turn_deg_per_s = puck.number("turn_deg_per_s", 1, 720);
-  out.puck.pan_per_s = puck.number("pan_per_s", 0.01, 10);
-  out.puck.zoom_per_s = puck.number("zoom_per_s", 1.01, 20);
-  out.puck.dead_zone = puck.number("dead_zone", 0, 0.5);
-  out.puck.one_axis = puck.flag("one_axis", false);
-  DUBSAR_TRY(puck.finish());
+  JsonFields space_mouse(object.at("puck"), where + ": puck");
+  out.space_mouse.turn_deg_per_s = space_mouse.number("turn_deg_per_s", 1, 720);
+  out.space_mouse.pan_per_s = space_mouse.number("pan_per_s", 0.01, 10);
+  out.space_mouse.zoom_per_s = space_mouse.number("zoom_per_s", 1.01, 20);
+  out.space_mouse.dead_zone = space_mouse.number("dead_zone", 0, 0.5);
+  out.space_mouse.one_axis = space_mouse.flag("one_axis", false);
+  DUBSAR_TRY(space_mouse.finish());
   JsonFields f(object, where);
   out.key_step_deg = f.number("key_step_deg", 0.1, 90);
   out.key_zoom = f.number("key_zoom", 1.001, 4);

@@ -18,7 +18,7 @@ namespace dubsar {
 /// What a movement does; what keys do are commands, which the mapping knows by their names only.
 enum class Action {
   kNone,
-  kRotate,      ///< drags and pucks: the object follows the hand
+  kRotate,      ///< drags and SpaceMice: the object follows the hand
   kRotateFine,  ///< a quarter as fast
   kPan,
   kZoom,
@@ -31,7 +31,7 @@ enum class Action {
 std::string_view action_name(Action action) noexcept;
 
 /// Who can steer the view.
-enum class Control { kNone, kMouse, kKeyboard, kPuck, kHands };
+enum class Control { kNone, kMouse, kKeyboard, kSpaceMouse, kHands };
 
 struct HandMapping {
   Action grab{}, pull{}, two_hands{}, pinch{}, swipe{}, dwell{};
@@ -50,7 +50,7 @@ struct MouseMapping {
   double turn_deg_per_px = 0, light_deg_per_px = 0, zoom_per_100_px = 0, zoom_per_notch = 0;
 };
 
-struct PuckMapping {
+struct SpaceMouseMapping {
   double turn_deg_per_s = 0, pan_per_s = 0, zoom_per_s = 0, dead_zone = 0;
   bool one_axis = false;  ///< only the strongest of the six counts
 };
@@ -61,7 +61,7 @@ struct Mapping {
   MouseMapping mouse;
   std::map<std::string, std::string> keys;  ///< changes: commands by key; "none" takes a key's own command away
   double key_step_deg = 0, key_zoom = 0;
-  PuckMapping puck;
+  SpaceMouseMapping space_mouse;
   double zoom_min = 0, zoom_max = 0;
   std::vector<Control> priority;  ///< first wins
   TimestampNs handover_ns = 0;    ///< a lower control gets the view this long after a higher one rests

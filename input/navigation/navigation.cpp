@@ -163,23 +163,24 @@ void Navigator::use_events(TimestampNs now, const InputFrame& frame) {
     if (event.kind != EventKind::kKey) use_mouse(event, now);
 }
 
-void Navigator::use_puck(TimestampNs now, const std::optional<PuckMotion>& puck, double dt_s) {
-  if (!puck) return;
-  std::array<double, 6> axes{puck->push.x, puck->push.y, puck->push.z, puck->twist.x, puck->twist.y, puck->twist.z};
+void Navigator::use_space_mouse(TimestampNs now, const std::optional<SpaceMouseMotion>& space_mouse, double dt_s) {
+  if (!space_mouse) return;
+  std::array<double, 6> axes{space_mouse->push.x,  space_mouse->push.y,  space_mouse->push.z,
+                             space_mouse->twist.x, space_mouse->twist.y, space_mouse->twist.z};
   double strongest = 0.0;
   for (double& a : axes) {
-    const double zone = mapping_.puck.dead_zone;
+    const double zone = mapping_.space_mouse.dead_zone;
     a = std::abs(a) <= zone ? 0.0 : std::copysign((std::min(std::abs(a), 1.0) - zone) / (1.0 - zone), a);
     strongest = std::max(strongest, std::abs(a));
   }
-  if (strongest == 0.0 || !claim(Control::kPuck, now)) return;
-  if (mapping_.puck.one_axis)
+  if (strongest == 0.0 || !claim(Control::kSpaceMouse, now)) return;
+  if (mapping_.space_mouse.one_axis)
     for (double& a : axes) a = std::abs(a) == strongest ? a : 0.0;
   if (claims_.fresh()) ++movement_;
   glide_.stop();
-  turn_view(view_, mapping_.puck.turn_deg_per_s * kRadPerDeg * dt_s * glm::dvec3(axes[3], axes[4], axes[5]));
-  view_.pan += mapping_.puck.pan_per_s * dt_s * glm::dvec2(axes[0], axes[1]);
-  view_.zoom *= std::pow(mapping_.puck.zoom_per_s, axes[2] * dt_s);
+  turn_view(view_, mapping_.space_mouse.turn_deg_per_s * kRadPerDeg * dt_s * glm::dvec3(axes[3], axes[4], axes[5]));
+  view_.pan += mapping_.space_mouse.pan_per_s * dt_s * glm::dvec2(axes[0], axes[1]);
+  view_.zoom *= std::pow(mapping_.space_mouse.zoom_per_s, axes[2] * dt_s);
 }
 
 void Navigator::drag(Action action, const glm::dvec2& moved, double deg_per_unit) {
@@ -291,7 +292,7 @@ void Navigator::update(TimestampNs now, const InputFrame& frame, const SteeringH
   last_update_ = now;
   claims_.advance(now, hold_.mode() != HandMode::kNone || grip_.holds() || mouse_.dragging || mouse_.pinching);
   use_events(now, frame);
-  use_puck(now, frame.puck, std::min(dt_s, 0.1));
+  use_space_mouse(now, frame.space_mouse, std::min(dt_s, 0.1));
   use_grips(now, frame.grips);
   const bool worn = frame.grips[0].active || frame.grips[1].active;
   use_hands(now, worn ? SteeringHands{} : hands, standing, dt_s);

@@ -1,5 +1,6 @@
 #pragma once
-// From input to the view: hands, mouse, keyboard and puck steer one object through a mapping. Time is an argument.
+// From input to the view: hands, mouse, keyboard and SpaceMouse steer one object through a mapping. Time is an
+// argument.
 
 #include <array>
 #include <cstdint>
@@ -83,7 +84,7 @@ class Navigator {
   void use_pinch(const InputEvent& event, TimestampNs now);
   void turn_by_mouse(const glm::dvec2& px, const std::optional<glm::dvec2>& moved, double gain);
   void zoom_about(const std::optional<glm::dvec2>& at, double factor);
-  void use_puck(TimestampNs now, const std::optional<PuckMotion>& puck, double dt_s);
+  void use_space_mouse(TimestampNs now, const std::optional<SpaceMouseMotion>& space_mouse, double dt_s);
   void use_hands(TimestampNs now, const SteeringHands& hands, const SteeringStanding& standing, double dt_s);
   void use_grips(TimestampNs now, const HandGrips& grips);
   void light_by_other_hand(const HandGrips& grips, const HeldObject& object);

@@ -29,7 +29,9 @@ dubsar_source_sink PluginFrame::sink() noexcept {
           this,
           [](void* self, const dubsar_source_head* head) { static_cast<PluginFrame*>(self)->add_head(head); },
           [](void* self, const dubsar_source_hand* hand) { static_cast<PluginFrame*>(self)->add_hand(hand); },
-          [](void* self, const dubsar_source_puck* puck) { static_cast<PluginFrame*>(self)->add_puck(puck); },
+          [](void* self, const dubsar_source_puck* space_mouse) {
+            static_cast<PluginFrame*>(self)->add_space_mouse(space_mouse);
+          },
           [](void* self, const dubsar_source_key* key) { static_cast<PluginFrame*>(self)->add_key(key); }};
 }
 
@@ -38,7 +40,7 @@ void PluginFrame::begin(TimestampNs now) {
   newest_ = 0;
   heads_.clear();
   hands_.clear();
-  puck_.reset();
+  space_mouse_.reset();
   keys_.clear();
 }
 
@@ -46,7 +48,7 @@ void PluginFrame::finish(InputFrame& frame) {
   frame.time = newest_ > 0 ? newest_ : now_;
   frame.heads.swap(heads_);
   frame.hands.swap(hands_);
-  if (puck_) frame.puck = puck_;
+  if (space_mouse_) frame.space_mouse = space_mouse_;
   frame.events.insert(frame.events.end(), keys_.begin(), keys_.end());
 }
 
@@ -123,23 +125,23 @@ void PluginFrame::add_hand(const dubsar_source_hand* given) noexcept {
   hands_.push_back(hand);
 }
 
-void PluginFrame::add_puck(const dubsar_source_puck* given) noexcept {
+void PluginFrame::add_space_mouse(const dubsar_source_puck* given) noexcept {
   dubsar_source_puck told;
   if (!take(given, told)) {
     ++refused_;
     return;
   }
-  PuckMotion puck;
+  SpaceMouseMotion space_mouse;
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(told.push[i]) || !std::isfinite(told.twist[i])) {
       ++refused_;
       return;
     }
-    puck.push[i] = std::clamp(told.push[i], -1.0, 1.0);
-    puck.twist[i] = std::clamp(told.twist[i], -1.0, 1.0);
+    space_mouse.push[i] = std::clamp(told.push[i], -1.0, 1.0);
+    space_mouse.twist[i] = std::clamp(told.twist[i], -1.0, 1.0);
   }
-  puck.time = host_time(told.time_ns);
-  puck_ = puck;
+  space_mouse.time = host_time(told.time_ns);
+  space_mouse_ = space_mouse;
 }
 
 void PluginFrame::add_key(const dubsar_source_key* given) noexcept {

@@ -26,7 +26,7 @@ class PluginFrame {
  private:
   void add_head(const dubsar_source_head* given) noexcept;
   void add_hand(const dubsar_source_hand* given) noexcept;
-  void add_puck(const dubsar_source_puck* given) noexcept;
+  void add_space_mouse(const dubsar_source_puck* given) noexcept;
   void add_key(const dubsar_source_key* given) noexcept;
   TimestampNs host_time(std::int64_t told) noexcept;
   bool placed(const double* position_m, glm::dvec3& out) const noexcept;
@@ -36,7 +36,7 @@ class PluginFrame {
   TimestampNs now_ = 0, newest_ = 0;
   std::vector<HeadFrame> heads_;
   std::vector<HandFrame> hands_;
-  std::optional<PuckMotion> puck_;
+  std::optional<SpaceMouseMotion> space_mouse_;
   std::vector<InputEvent> keys_;
   std::uint64_t dropped_ = 0, refused_ = 0;
 };

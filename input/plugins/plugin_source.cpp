@@ -104,13 +104,13 @@ class PluginRunner {
     newest.events.clear();
     const std::lock_guard lock(mutex_);
     silent_ = connected_ && now - answered_ > kPluginPatienceNs;
-    if (!connected_ || silent_) newest.puck.reset();
+    if (!connected_ || silent_) newest.space_mouse.reset();
     const bool fresh = std::exchange(fresh_, false);
     if (fresh) {
       newest.time = frame_.time;
       newest.heads = frame_.heads;
       newest.hands = frame_.hands;
-      newest.puck = frame_.puck;
+      newest.space_mouse = frame_.space_mouse;
       newest.events.swap(frame_.events);
       frame_.events.clear();
     }
@@ -133,7 +133,7 @@ class PluginRunner {
   void say_lost(const std::string& why) {
     const std::lock_guard lock(mutex_);
     connected_ = fresh_ = false;
-    frame_.puck.reset();
+    frame_.space_mouse.reset();
     reason_ = why;
   }
 

@@ -90,7 +90,7 @@ class ScriptedPerson final : public SimulatedPerson {
   }
 
   const Script script_;
-  const std::optional<VisitorGoal> goal_;  // of one who steers with a puck
+  const std::optional<VisitorGoal> goal_;  // of one who steers with a SpaceMouse
   const std::shared_ptr<const SeenView> seen_;
   ViewState view_{};
   std::unique_ptr<InputSource> actor_;
@@ -115,7 +115,7 @@ Result<std::shared_ptr<SimulatedPerson>> make_scripted_person(const DriverEntry&
   if (head && script.heads.empty()) return fail(ErrorKind::kUsage, "simulate {}: the script has no head", driver.name);
   if (!head && !hands) return fail(ErrorKind::kUsage, "simulate {}: the script has no hands", driver.name);
   std::optional<VisitorGoal> steers;
-  if (driver.gives == Gives::kPuck) steers = script.visitor;
+  if (driver.gives == Gives::kSpaceMouse) steers = script.visitor;
   if (head || steers) script.visitor.reset();
   if (driver.gives == Gives::kStereoPictures) script.latency_s = 0.0;
   return std::make_shared<ScriptedPerson>(std::move(script), steers, std::move(options.seen));

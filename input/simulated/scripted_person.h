@@ -15,7 +15,7 @@ struct PersonOptions {
   std::shared_ptr<const SeenView> seen{};  ///< a visitor of the script needs it
 };
 
-/// A puck is held by the first hand: while it grabs, 50 mm from where it took hold are full deflection; a visitor
+/// A SpaceMouse is held by the first hand: while it grabs, 50 mm from where it took hold are full deflection; a visitor
 /// steers until the view stands as wished. The script's latency is that of the device, except for pictures, which have
 /// their own way to go. kUsage: a visitor who sees nothing, a device for heads and a script without one, and the like.
 Result<std::shared_ptr<SimulatedPerson>> make_scripted_person(const DriverEntry& driver, PersonOptions options);

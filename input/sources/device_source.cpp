@@ -35,9 +35,9 @@ class DeviceReader final : public SourceReader {
   bool finished() const override { return ended_ && *ended_; }
 
  private:
-  bool use(const PuckSample& sample, InputFrame& frame) {
+  bool use(const SpaceMouseSample& sample, InputFrame& frame) {
     frame.time = sample.time;
-    frame.puck = PuckMotion{sample.time, sample.translation, sample.rotation};
+    frame.space_mouse = SpaceMouseMotion{sample.time, sample.translation, sample.rotation};
     change_buttons(sample.time, sample.buttons, frame);
     return true;
   }
@@ -82,9 +82,9 @@ class DeviceReader final : public SourceReader {
     }
     buttons_ = buttons;
   }
-  /// An unplugged puck is at rest and holds no button; no finger is on a panel that is gone.
+  /// An unplugged SpaceMouse is at rest and holds no button; no finger is on a panel that is gone.
   void let_go(TimestampNs now, InputFrame& frame) {
-    frame.puck.reset();
+    frame.space_mouse.reset();
     if (std::exchange(touched_, false)) {
       frame.time = now;
       frame.touches.push_back({now, {}, true});
@@ -112,7 +112,7 @@ Result<std::unique_ptr<InputSource>> make_device_source(const DriverEntry& drive
                        fmt::format("input {}", driver.input.source.substr(0, driver.input.source.find(':'))));
   if (driver.input.source.find(':') != std::string_view::npos) static_cast<void>(options.first_word());  // "opentrack"
   HeadPlacement placement;
-  const bool told_at_rest = driver.gives != Gives::kPuck && driver.gives != Gives::kTouches;
+  const bool told_at_rest = driver.gives != Gives::kSpaceMouse && driver.gives != Gives::kTouches;
   if (told_at_rest) placement.screen_from_tracker = options.placement(driver.usual_place);
   if (driver.gives == Gives::kHead) {
     placement.eyes_m = 1e-3 * options.triple("eyes", 500.0, glm::dvec3(0.0));

@@ -104,7 +104,7 @@ class OpenXrSource final : public InputSource {
     return closed || (was_closed && hand.time - closed_at_[side] < kBounceNs);
   }
 
-  /// A trigger is the key of a puck: the next side.
+  /// A trigger is the key of a SpaceMouse: the next side.
   void press(const WornSample& sample, InputFrame& newest) {
     for (std::size_t side = 0; side < 2; ++side) {
       const bool down = sample.controllers[side].active && sample.controllers[side].select;

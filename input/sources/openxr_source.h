@@ -12,8 +12,8 @@ namespace dubsar {
 void complete_hand(HandFrame& hand);
 
 /// Options: none. kUnavailable where nothing is worn: expected --display openxr. Hands go to the gestures; a controller
-/// that is squeezed is a puck, pushed by where it is moved from where the squeeze began (10 cm: all the way) and
-/// twisted by how it is turned (45 degrees); its trigger is puck button 1. Nothing new for 0.5 s: lost.
+/// that is squeezed steers as a SpaceMouse does, pushed by where it is moved from where the squeeze began (10 cm: all
+/// the way) and twisted by how it is turned (45 degrees); its trigger is button 1 of one. Nothing new for 0.5 s: lost.
 Result<std::unique_ptr<InputSource>> make_openxr_source(const InputConfig& config);
 
 }  // namespace dubsar

@@ -34,7 +34,7 @@ class ReadInput {
     if (measured == nullptr) return;
     fresh_ = measured_ = true;
     frame_.time = measured->time;
-    frame_.puck = measured->puck;
+    frame_.space_mouse = measured->space_mouse;
     frame_.hands = measured->hands;
     frame_.heads = measured->heads;
     for (const TouchFrame& touch : measured->touches) add_touch_frame(frame_.touches, touch, kMostTouchFrames);
@@ -58,7 +58,7 @@ class ReadInput {
     const bool fresh = std::exchange(fresh_, false);
     if (fresh) {
       newest.time = frame_.time;
-      newest.puck = frame_.puck;
+      newest.space_mouse = frame_.space_mouse;
       newest.hands = frame_.hands;
       newest.heads = frame_.heads;
       newest.events.swap(frame_.events);
@@ -69,7 +69,7 @@ class ReadInput {
       newest.heads.clear();
     }
     silent_ = traits.silent_ns > 0 && (!measured_ || now - frame_.time > traits.silent_ns);
-    if (!state_.connected) newest.puck.reset();
+    if (!state_.connected) newest.space_mouse.reset();
     if (fresh && !silent_) return Freshness::kNew;
     return state_.connected && !silent_ ? Freshness::kUnchanged : Freshness::kLost;
   }

@@ -71,7 +71,7 @@ TEST(Enumerate, HeadsetsAreKnownByAllTheirNumbersAndGlassesThatCannotBeReadSayWh
   EXPECT_EQ(found[2].state, DeviceState::kUsable);
 }
 
-TEST(Enumerate, UnknownProductsOf3DconnexionAreTakenForPucksAndItsMiceAreTheSystems) {
+TEST(Enumerate, UnknownProductsOf3DconnexionAreTakenForSpaceMiceAndItsMiceAreTheSystems) {
   const auto seen_as = [](std::uint16_t vendor, std::uint16_t product) {
     const auto found = known_hid_devices({{"/dev/hidraw0", vendor, product, 1, 8, 0, "", "", ""}},
                                          [](const std::string&) { return 0; });
@@ -213,7 +213,7 @@ TEST(SampleDevice, IsItsProtocolItsSimulatorAndItsRow) {
   double furthest = 0.0;
   for (; !session.finished(); clock.advance(4'000'000))
     if (const auto sample = (*driver)->next(clock.now(), milliseconds(0)))
-      furthest = std::max(furthest, glm::length(std::get<PuckSample>(*sample).translation));
+      furthest = std::max(furthest, glm::length(std::get<SpaceMouseSample>(*sample).translation));
   EXPECT_GT(furthest, 0.5);
   EXPECT_EQ((*driver)->counts().refused, 0u);
   // a source, over the same recording
@@ -227,7 +227,7 @@ TEST(SampleDevice, IsItsProtocolItsSimulatorAndItsRow) {
   InputFrame frame;
   int fresh = 0;
   for (int i = 0; i < 1000 && !(*source)->finished(); ++i, clock.advance(4'000'000))
-    fresh += (*source)->poll(clock.now(), frame) == Freshness::kNew && frame.puck ? 1 : 0;
+    fresh += (*source)->poll(clock.now(), frame) == Freshness::kNew && frame.space_mouse ? 1 : 0;
   EXPECT_TRUE((*source)->finished());
   EXPECT_GT(fresh, 100);
   fs::remove(file);

@@ -44,7 +44,7 @@ TEST(Recordings, SpaceMousePaceIsTheRecordedOne) {
   ManualClock clock;
   ReplaySession session(*recording, clock, 1.0);
   Driver<SpaceMouseProtocol> driver([&] { return session.open(); }, SpaceMouseProtocol());
-  std::vector<PuckSample> samples;
+  std::vector<SpaceMouseSample> samples;
   for (; clock.now() <= 120'000'000; clock.advance(8'000'000))
     if (const auto sample = driver.poll(clock.now())) samples.push_back(*sample);
   ASSERT_EQ(samples.size(), 7U);

@@ -31,7 +31,7 @@ class SimulatedWand final : public PacedDevice {
 
 bool WandProtocol::accept(std::span<const std::byte> report, TimestampNs now) {
   if (report.size() != 4 || report[0] != std::byte{'W'}) return false;
-  PuckSample sample;
+  SpaceMouseSample sample;
   sample.time = now;
   for (int i = 0; i < 3; ++i) {
     const int share = static_cast<std::int8_t>(report[static_cast<std::size_t>(i) + 1]);
@@ -53,7 +53,7 @@ DriverTable wand_table() {
         .summary = "a wand",
         .bus = Bus::kHid,
         .ids = kIds,
-        .gives = Gives::kPuck,
+        .gives = Gives::kSpaceMouse,
         .input = {.source = "wand", .taken_unasked = true},
         .open = [](const DriverEntry& self, OptionReader&, const Clock& clock) -> Result<OpenTransport> {
           return OpenTransport([&self, &clock] { return open_hid_device(self, clock); });

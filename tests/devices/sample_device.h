@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "devices/drivers.h"
-#include "devices/spacemouse/puck_sample.h"
+#include "devices/spacemouse/spacemouse_sample.h"
 
 namespace dubsar::test {
 
@@ -15,7 +15,7 @@ inline constexpr std::uint16_t kWandVendor = 0x1209, kWandProduct = 0x57a0;
 /// Four bytes: 'W', then the push along x, y and z as signed shares of 100.
 class WandProtocol {
  public:
-  using Sample = PuckSample;
+  using Sample = SpaceMouseSample;
   Result<void> start(Transport&, TimestampNs) { return {}; }
   Result<void> keep_up(Transport&, TimestampNs) { return {}; }
   bool accept(std::span<const std::byte> report, TimestampNs now);

@@ -1,4 +1,4 @@
-// SpaceMouse reports, and a puck that comes and goes.
+// SpaceMouse reports, and one that comes and goes.
 
 #include <dirent.h>
 #include <gtest/gtest.h>
@@ -147,7 +147,7 @@ TEST(SpaceMouse, AThousandUnpluggingsLeaveNoThreadNoDescriptorAndTakeLessThanASe
     sim.device().plug();
     if (cycle % 2 == 0) driver.wake();  // as HotplugWatch does; without it only short losses are quick
     const TimestampNs replugged = clock.now();
-    std::optional<PuckSample> sample;
+    std::optional<SpaceMouseSample> sample;
     while (!sample && clock.now() - replugged < 20 * kSecond) {
       sim.move({cycle % 350, 0, 0}, {0, 0, 0});
       sample = driver.poll(clock.now());

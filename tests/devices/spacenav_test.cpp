@@ -62,7 +62,7 @@ struct SpacenavBench {
     driver.poll(0);
     device.send(spacenav_hello(1));
   }
-  std::optional<PuckSample> say(const char* hex, TimestampNs now) {
+  std::optional<SpaceMouseSample> say(const char* hex, TimestampNs now) {
     device.send(from_hex(hex));
     return driver.poll(now);
   }
@@ -80,7 +80,7 @@ TEST(Spacenav, FiveHundredIsFullDeflection) {
 }
 
 // UEV_DEV, DEV_RM, id 0, SpaceMouse Compact, 256f:c635, as spacenavd's send_uevent packs it
-TEST(Spacenav, APuckThatIsUnpluggedWhilePushedLetsGo) {
+TEST(Spacenav, ASpaceMouseThatIsUnpluggedWhilePushedLetsGo) {
   SpacenavBench bench;
   bench.say(kPushedRight, 1);
   ASSERT_EQ(bench.say("01000000 02000000 00000000 00000000 00000000 00000000 00000000 00000000", 2)->buttons, 4U);

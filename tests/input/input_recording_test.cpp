@@ -95,7 +95,7 @@ TEST(Recording, EverythingInAFrameSurvives) {
                         {340, EventKind::kPinch, {}, {}, true, 0, {}, false, glm::dvec2(0.1, 0.2)}};
   frame.frame.events[4].pinch = {{0.01, -0.02}, 1.25, -0.5};
   frame.frame.events[4].touched = true;
-  frame.frame.puck = PuckMotion{399, {0.1, -0.2, 0.3}, {1, 0, -1}};
+  frame.frame.space_mouse = SpaceMouseMotion{399, {0.1, -0.2, 0.3}, {1, 0, -1}};
   HandFrame hand;
   hand.time = 398;
   hand.id = 4'000'000'000u;
@@ -185,7 +185,7 @@ TEST(Recording, LengthDoesNotMatter) {
   {
     std::ofstream file(path);
     InputFrame frame;
-    frame.puck = PuckMotion{};
+    frame.space_mouse = SpaceMouseMotion{};
     for (int i = 0; i < kFrames; ++i) file << record_line({i * 11'000'000LL, frame}) << "\n";
   }
   ASSERT_GT(std::filesystem::file_size(path), std::uintmax_t{9} << 20);

@@ -108,7 +108,7 @@ TEST_F(LabSpaceMouse, IsListedSaysItsAxesLightsUpAndComesBack) {
   EXPECT_EQ(info.state, DeviceState::kUsable) << info.reason;
   {
     Driver<SpaceMouseProtocol> driver([this] { return open_hid_device("spacemouse", clock_); }, SpaceMouseProtocol());
-    std::optional<PuckSample> sample;
+    std::optional<SpaceMouseSample> sample;
     ASSERT_TRUE(eventually([&] {
       if (auto newest = driver.poll(clock_.now(), milliseconds(20))) sample = newest;
       // Two reports tell the two halves; whoever opens between them hears the second one first.

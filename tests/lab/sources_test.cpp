@@ -66,13 +66,13 @@ class LabSources : public Lab {
     return age_s - 1e-9 * static_cast<double>(clock_.now() - running.polled);
   }
 
-  SpaceMouseSim puck_;
-  UhidDevice puck_plug_{{0x256f, 0xc635, "SpaceMouse Compact", "LAB1", kSpaceMouseReports},
-                        [this] { return puck_.device().open(); },
-                        [this] {
-                          puck_.move({350, 0, -175}, {0, 70, 0});
-                        },
-                        milliseconds(16)};
+  SpaceMouseSim space_mouse_;
+  UhidDevice space_mouse_plug_{{0x256f, 0xc635, "SpaceMouse Compact", "LAB1", kSpaceMouseReports},
+                               [this] { return space_mouse_.device().open(); },
+                               [this] {
+                                 space_mouse_.move({350, 0, -175}, {0, 70, 0});
+                               },
+                               milliseconds(16)};
   XrealGadget glasses_{{0.0, 0.0, 0.0}, 0};
   UsbipPort glasses_plug_{glasses_};
   PluggedLeap leap_;
@@ -80,25 +80,25 @@ class LabSources : public Lab {
   std::shared_ptr<HotplugBell> hotplug_;
 };
 
-TEST_F(LabSources, PuckGlassesAndLeapComeGoAndComeBackWhileTheSessionRuns) {
+TEST_F(LabSources, SpaceMouseGlassesAndLeapComeGoAndComeBackWhileTheSessionRuns) {
   const int threads_before = threads();
   {
-    Running puck = start("spacemouse", clock_), glasses = start("head:xreal", clock_),
+    Running space_mouse = start("spacemouse", clock_), glasses = start("head:xreal", clock_),
             leap = start("leap", slow_clock_);
-    ASSERT_TRUE(puck.source && glasses.source && leap.source);
-    for (Running* running : {&puck, &glasses, &leap}) {
+    ASSERT_TRUE(space_mouse.source && glasses.source && leap.source);
+    for (Running* running : {&space_mouse, &glasses, &leap}) {
       ASSERT_TRUE(becomes(*running, Freshness::kLost));
       EXPECT_TRUE(eventually([&] { return running->source->note().find("plugged in") != std::string::npos; }))
           << running->source->note();
     }
     for (int plugging = 0; plugging < 2; ++plugging) {
-      ASSERT_TRUE(puck_plug_.plug());
-      ASSERT_TRUE(becomes(puck, Freshness::kNew)) << puck.source->note();
-      const double puck_s = seconds_from_node(puck, "spacemouse");
-      ASSERT_TRUE(puck.frame.puck);
+      ASSERT_TRUE(space_mouse_plug_.plug());
+      ASSERT_TRUE(becomes(space_mouse, Freshness::kNew)) << space_mouse.source->note();
+      const double space_mouse_s = seconds_from_node(space_mouse, "spacemouse");
+      ASSERT_TRUE(space_mouse.frame.space_mouse);
       const auto pushed = [&] {  // the first report that is read may be the one of the turn
-        puck.source->poll(clock_.now(), puck.frame);
-        return puck.frame.puck && puck.frame.puck->push.x == 1.0;
+        space_mouse.source->poll(clock_.now(), space_mouse.frame);
+        return space_mouse.frame.space_mouse && space_mouse.frame.space_mouse->push.x == 1.0;
       };
       EXPECT_TRUE(eventually(pushed, milliseconds(2000)));
 
@@ -107,16 +107,16 @@ TEST_F(LabSources, PuckGlassesAndLeapComeGoAndComeBackWhileTheSessionRuns) {
       const double glasses_s = seconds_from_node(glasses, "xreal");
       ASSERT_EQ(glasses.frame.heads.size(), 1U);
       EXPECT_NEAR(glasses.frame.heads[0].left_eye_m->x, -0.0315, 1e-3);
-      std::printf("after their nodes: SpaceMouse %.0f ms, glasses %.0f ms\n", 1e3 * puck_s, 1e3 * glasses_s);
-      EXPECT_LT(puck_s, 1.0);
+      std::printf("after their nodes: SpaceMouse %.0f ms, glasses %.0f ms\n", 1e3 * space_mouse_s, 1e3 * glasses_s);
+      EXPECT_LT(space_mouse_s, 1.0);
       EXPECT_LT(glasses_s, 1.0);
 
-      puck_plug_.unplug();
+      space_mouse_plug_.unplug();
       glasses_plug_.unplug();
       glasses_.switch_off();
-      EXPECT_TRUE(becomes(puck, Freshness::kLost, milliseconds(2000)));
+      EXPECT_TRUE(becomes(space_mouse, Freshness::kLost, milliseconds(2000)));
       EXPECT_TRUE(becomes(glasses, Freshness::kLost, milliseconds(2000)));
-      EXPECT_FALSE(puck.frame.puck);
+      EXPECT_FALSE(space_mouse.frame.space_mouse);
     }
     for (int plugging = 0; plugging < 2; ++plugging) {
       ASSERT_TRUE(leap_.plug());

@@ -62,7 +62,7 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "This window", "F1  ?"), "this help");
   const auto plain = help_page(default_mapping().value(), keys, {.more = false, .two_eyes = false});
   EXPECT_EQ(find(plain, "Hands", "grab and pull"), "") << "no device follows hands";
-  EXPECT_EQ(find(plain, "Puck", "push"), "");
+  EXPECT_EQ(find(plain, "3D mouse", "push"), "");
   EXPECT_EQ(find(plain, "View", "Home"), "back to the first view") << "without the button of a puck";
   EXPECT_EQ(find(plain, "This window", "X"), "") << "one view has no eyes to exchange";
   EXPECT_EQ(find(plain, "Mouse", "left drag"), "turn");

@@ -321,12 +321,12 @@ TEST(Navigation, HandsCannotTakeTheViewFromTheMouse) {
   EXPECT_EQ(desk.view().rotation, ViewState().rotation);
 }
 
-TEST(Navigation, ThePuckTurnsAtItsRateOutsideItsDeadZone) {
+TEST(Navigation, TheSpaceMouseTurnsAtItsRateOutsideItsDeadZone) {
   Desk desk;
-  desk.frame.puck = PuckMotion{0, {0, 0, 0}, {0, 1, 0}};
+  desk.frame.space_mouse = SpaceMouseMotion{0, {0, 0, 0}, {0, 1, 0}};
   desk.steps(101);  // the first step has no duration
   EXPECT_NEAR(turn_between_deg(desk.view().rotation, about({0, 1, 0}, 90)), 0, 1e-6);
-  desk.frame.puck = PuckMotion{0, {0, 0, 1}, {0, 0.04, 0}};
+  desk.frame.space_mouse = SpaceMouseMotion{0, {0, 0, 1}, {0, 0.04, 0}};
   const glm::dquat before = desk.view().rotation;
   desk.steps(100);
   EXPECT_EQ(turn_between_deg(desk.view().rotation, before), 0.0);

@@ -15,7 +15,7 @@ class Thrower final : public SourceReader {
   bool read(TimestampNs now, milliseconds, InputFrame& frame) override {
     if (good_-- == 0) throw std::logic_error("index 7 of 3");
     frame.time = now;
-    frame.puck = PuckMotion{now, {1, 0, 0}, {}};
+    frame.space_mouse = SpaceMouseMotion{now, {1, 0, 0}, {}};
     return true;
   }
   bool connected() const override { return true; }
@@ -33,7 +33,7 @@ TEST(BrokenReader, AnExceptionIsALossWithItsReason) {
   EXPECT_EQ(bench.poll(*source), Freshness::kNew);
   EXPECT_EQ(bench.poll(*source), Freshness::kNew);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(bench.poll(*source), Freshness::kLost);
-  EXPECT_FALSE(bench.frame.puck);
+  EXPECT_FALSE(bench.frame.space_mouse);
   EXPECT_EQ(source->note(), "thrower: reading has stopped by a mistake of this program: index 7 of 3");
 }
 

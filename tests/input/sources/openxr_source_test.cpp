@@ -104,7 +104,7 @@ TEST(OpenXrSource, ASqueezedControllerIsAClosedHandAndItsTriggerTheNextSide) {
   WornSample sample;
   sample.controllers[1] = {true, {{0.2, 0, 0.1}, {1, 0, 0, 0}}, 0.0, false};
   bench.after(sample);
-  EXPECT_FALSE(bench.frame.puck);
+  EXPECT_FALSE(bench.frame.space_mouse);
   EXPECT_FALSE(bench.frame.grips[0].active);
   ASSERT_TRUE(bench.frame.grips[1].active);
   EXPECT_TRUE(bench.frame.grips[1].controller);

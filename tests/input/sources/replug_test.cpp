@@ -56,8 +56,8 @@ TEST(Replug, AThousandTimesWithTheFirstPoseWithinASecond) {
   bench.config.reach_device = [&](const DeviceSpec& choice, const Clock&) -> Result<OpenTransport> {
     return OpenTransport([&, head = choice.driver == "opentrack"] { return (head ? tracker : mouse.device()).open(); });
   };
-  const auto puck = bench.make("spacemouse"), head = bench.make("head:opentrack");
-  InputFrame puck_frame, head_frame;
+  const auto space_mouse = bench.make("spacemouse"), head = bench.make("head:opentrack");
+  InputFrame space_mouse_frame, head_frame;
   Held before;
   for (int cycle = 0; cycle < kCycles; ++cycle) {
     if (cycle == kWarmUp) before = Held();
@@ -71,7 +71,8 @@ TEST(Replug, AThousandTimesWithTheFirstPoseWithinASecond) {
       ASSERT_LE(bench.clock.now() - plugged, kSecond) << "cycle " << cycle;
       mouse.move({100, 0, 0}, {0, 0, 0});
       tracker.send(format_opentrack({0, 0, 0, 0, 0, 0}));
-      pushed = puck->poll(bench.clock.now(), puck_frame) == Freshness::kNew && puck_frame.puck;
+      pushed =
+          space_mouse->poll(bench.clock.now(), space_mouse_frame) == Freshness::kNew && space_mouse_frame.space_mouse;
       seen = head->poll(bench.clock.now(), head_frame) == Freshness::kNew && !head_frame.heads.empty();
     }
     mouse.device().unplug();
@@ -79,7 +80,7 @@ TEST(Replug, AThousandTimesWithTheFirstPoseWithinASecond) {
     // away for up to 30 s, so that the pauses between attempts have grown
     for (int i = 0; i < 1 + cycle % 30; ++i) {
       bench.clock.advance(kSecond);
-      puck->poll(bench.clock.now(), puck_frame);
+      space_mouse->poll(bench.clock.now(), space_mouse_frame);
       ASSERT_EQ(head->poll(bench.clock.now(), head_frame), Freshness::kLost);
     }
   }

@@ -96,16 +96,16 @@ TEST(SimulatedPeople, GlassesTurnAsTheWearerLooksAtThePanel) {
   }
 }
 
-TEST(SimulatedPeople, AVisitorWithAPuckTurnsTheViewToWhereItIsWished) {
+TEST(SimulatedPeople, AVisitorWithASpaceMouseTurnsTheViewToWhereItIsWished) {
   const ScriptFile file(
       R"({"duration_s": 20, "rate_hz": 60, "latency_ms": 20, "visitor": {"yaw_deg": 40, "pitch_deg": 15, "zoom": 1.3}})");
-  for (const char* puck : {"spacemouse", "spacenav"}) {
+  for (const char* space_mouse : {"spacemouse", "spacenav"}) {
     SourceBench bench;
     Navigator navigator(default_mapping().value());
     PersonKeeper people;
     ViewState seen = navigator.view();
     bench.config.seen_view = [&] { return seen; };
-    const auto source = bench.make(std::string(puck) + ":simulate=" + file.path());
+    const auto source = bench.make(std::string(space_mouse) + ":simulate=" + file.path());
     double turned_at_once = 0.0;
     for (int i = 0; i < 60 * 20 && !source->finished(); ++i, bench.clock.advance(kSecond / 60)) {
       bench.poll(*source);
@@ -113,12 +113,12 @@ TEST(SimulatedPeople, AVisitorWithAPuckTurnsTheViewToWhereItIsWished) {
       turned_at_once = std::max(turned_at_once, turn_between_deg(seen.rotation, navigator.view().rotation));
       seen = navigator.view();
     }
-    EXPECT_TRUE(source->finished()) << puck;
+    EXPECT_TRUE(source->finished()) << space_mouse;
     constexpr double kRad = std::numbers::pi / 180.0;
     const glm::dquat wished = turn_of({15 * kRad, 0, 0}) * turn_of({0, 40 * kRad, 0});
-    EXPECT_LE(turn_between_deg(seen.rotation, wished), 2.0) << puck;
-    EXPECT_NEAR(seen.zoom, 1.3, 0.03) << puck;
-    EXPECT_LE(turned_at_once, 3.0) << puck;
+    EXPECT_LE(turn_between_deg(seen.rotation, wished), 2.0) << space_mouse;
+    EXPECT_NEAR(seen.zoom, 1.3, 0.03) << space_mouse;
+    EXPECT_LE(turned_at_once, 3.0) << space_mouse;
   }
   EXPECT_EQ(make_input("spacemouse:simulate=" + file.path()).error().kind,
             ErrorKind::kUsage);  // nothing to look at

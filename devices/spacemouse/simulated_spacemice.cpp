@@ -1,4 +1,4 @@
-#include "devices/spacemouse/simulated_pucks.h"
+#include "devices/spacemouse/simulated_spacemice.h"
 
 #include "devices/spacemouse/spacemouse_sim.h"
 #include "devices/spacemouse/spacenav_server.h"
@@ -8,9 +8,9 @@ namespace {
 
 glm::ivec3 raw(const glm::dvec3& share, int full_scale) { return glm::ivec3(glm::round(share * double(full_scale))); }
 
-class SimulatedPuck : public PacedDevice {
+class SimulatedCap : public PacedDevice {
  public:
-  explicit SimulatedPuck(const Simulation& simulation) : PacedDevice(simulation) {}
+  explicit SimulatedCap(const Simulation& simulation) : PacedDevice(simulation) {}
 
  protected:
   virtual void send(const CapDeflection& cap) = 0;
@@ -26,9 +26,9 @@ class SimulatedPuck : public PacedDevice {
   CapDeflection last_;
 };
 
-class SimulatedSpaceMouse final : public SimulatedPuck {
+class SimulatedSpaceMouse final : public SimulatedCap {
  public:
-  using SimulatedPuck::SimulatedPuck;
+  using SimulatedCap::SimulatedCap;
   Result<std::unique_ptr<Transport>> open() override { return sim_.device().open(); }
 
  private:
@@ -38,9 +38,9 @@ class SimulatedSpaceMouse final : public SimulatedPuck {
   SpaceMouseSim sim_;
 };
 
-class SimulatedSpacenav final : public SimulatedPuck {
+class SimulatedSpacenav final : public SimulatedCap {
  public:
-  explicit SimulatedSpacenav(const Simulation& simulation) : SimulatedPuck(simulation) {
+  explicit SimulatedSpacenav(const Simulation& simulation) : SimulatedCap(simulation) {
     SimBehaviour behaviour;
     behaviour.on_write = [this](std::span<const std::byte> bytes) -> Result<void> {
       if (const auto answer = side_.accept(bytes); !answer.empty()) device_.send(answer);

@@ -14,7 +14,7 @@
 namespace dubsar::test {
 namespace {
 
-TEST(SpaceMouseSource, ReportsBecomeThePucksMotionInScreenAxesAndItsButtonsKeys) {
+TEST(SpaceMouseSource, ReportsBecomeMotionInScreenAxesAndItsButtonsKeys) {
   SourceBench bench;
   SpaceMouseSim mouse;
   bench.put(mouse.device());
@@ -25,8 +25,8 @@ TEST(SpaceMouseSource, ReportsBecomeThePucksMotionInScreenAxesAndItsButtonsKeys)
   mouse.press(0b10);
   bench.clock.advance(10 * kMs);
   ASSERT_EQ(bench.poll(*source), Freshness::kNew);
-  ASSERT_TRUE(bench.frame.puck);
-  EXPECT_EQ(bench.frame.puck->push, glm::dvec3(1.0, 0.5, 0.0));
+  ASSERT_TRUE(bench.frame.space_mouse);
+  EXPECT_EQ(bench.frame.space_mouse->push, glm::dvec3(1.0, 0.5, 0.0));
   EXPECT_EQ(bench.frame.time, kSecond + 10 * kMs);
   ASSERT_EQ(bench.frame.events.size(), 1u);
   EXPECT_EQ(bench.frame.events[0].key, "puck2");
@@ -34,10 +34,10 @@ TEST(SpaceMouseSource, ReportsBecomeThePucksMotionInScreenAxesAndItsButtonsKeys)
   bench.clock.advance(10 * kMs);
   EXPECT_EQ(bench.poll(*source), Freshness::kUnchanged);
   EXPECT_TRUE(bench.frame.events.empty());
-  ASSERT_TRUE(bench.frame.puck);  // stays pushed until it says otherwise
+  ASSERT_TRUE(bench.frame.space_mouse);  // stays pushed until it says otherwise
 }
 
-TEST(SpaceMouseSource, APuckThatIsPulledOutIsAtRestAndHoldsNoButton) {
+TEST(SpaceMouseSource, ASpaceMouseThatIsPulledOutIsAtRestAndHoldsNoButton) {
   SourceBench bench;
   SpaceMouseSim mouse;
   bench.put(mouse.device());
@@ -49,7 +49,7 @@ TEST(SpaceMouseSource, APuckThatIsPulledOutIsAtRestAndHoldsNoButton) {
   mouse.device().unplug();
   bench.clock.advance(kMs);
   bench.poll(*source);
-  EXPECT_FALSE(bench.frame.puck);
+  EXPECT_FALSE(bench.frame.space_mouse);
   ASSERT_EQ(bench.frame.events.size(), 1u);
   EXPECT_FALSE(bench.frame.events[0].down);
   bench.clock.advance(kMs);
@@ -66,7 +66,7 @@ TEST(SpaceMouseSource, APuckThatIsPulledOutIsAtRestAndHoldsNoButton) {
 }
 
 TEST(SpaceMouseSource, ARecordingOfTheDevicePlaysThroughTheSameDriverAndEnds) {
-  const auto file = std::filesystem::temp_directory_path() / ("dubsar_puck_" + std::to_string(::getpid()));
+  const auto file = std::filesystem::temp_directory_path() / ("dubsar_spacemouse_" + std::to_string(::getpid()));
   {
     ManualClock clock;
     SpaceMouseSim mouse;
@@ -91,7 +91,7 @@ TEST(SpaceMouseSource, ARecordingOfTheDevicePlaysThroughTheSameDriverAndEnds) {
   EXPECT_TRUE(source->has_end());
   bench.clock.advance(105 * kMs);
   ASSERT_EQ(bench.poll(*source), Freshness::kNew);
-  EXPECT_NEAR(bench.frame.puck->push.x, 0.5, 1e-12);
+  EXPECT_NEAR(bench.frame.space_mouse->push.x, 0.5, 1e-12);
   EXPECT_FALSE(source->finished());
   bench.clock.advance(100 * kMs);
   bench.poll(*source);
@@ -127,7 +127,7 @@ TEST(SpaceMouseSource, ItsThreadStampsReportsWhenTheyComeNotWhenTheyAreAskedFor)
   EXPECT_EQ(frame.time, 5 * kSecond);
 }
 
-TEST(SpacenavSource, EventsOfTheDaemonArePuckMotions) {
+TEST(SpacenavSource, EventsOfTheDaemonAreMotions) {
   SourceBench bench;
   SimDevice daemon("simulated spacenavd", false);
   bench.put(daemon);
@@ -138,7 +138,7 @@ TEST(SpacenavSource, EventsOfTheDaemonArePuckMotions) {
   event.rotation = {0, 250, 0};
   daemon.send(format_spacenav(event));
   ASSERT_EQ(bench.poll(*source), Freshness::kNew);
-  EXPECT_EQ(bench.frame.puck->twist, glm::dvec3(0.0, 0.5, 0.0));
+  EXPECT_EQ(bench.frame.space_mouse->twist, glm::dvec3(0.0, 0.5, 0.0));
 
   // A daemon that comes back makes no device node: it is found by itself within a second.
   daemon.unplug();

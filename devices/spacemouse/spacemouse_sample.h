@@ -1,5 +1,5 @@
 #pragma once
-// What every six-axis puck gives, whatever its bytes look like.
+// What every six-axis 3D mouse gives, whatever its bytes look like.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -9,7 +9,7 @@
 namespace dubsar {
 
 /// The cap and the buttons, in the axes of the screen frame (x right, y up, z to the viewer).
-struct PuckSample {
+struct SpaceMouseSample {
   TimestampNs time = 0;
   glm::dvec3 translation{0.0};  ///< each -1..1: share of the full deflection
   glm::dvec3 rotation{0.0};     ///< right-handed about each axis, -1..1
