@@ -1,5 +1,5 @@
 #pragma once
-// What lies over the object in a gallery: one line at reading distance, a hand that shows what can be done, signs to
+// What lies over the object in a gallery: one line at reading distance, a hand that shows what can be done, buttons to
 // rest a hand on, where one is in a tour, the operator's menu. Plain values, between who leads and who draws.
 
 #include <cstdint>
@@ -15,33 +15,33 @@ namespace dubsar::app {
 enum class Lesson : std::uint8_t { kShowHand, kGrab, kTurn, kRest, kTwoHands, kSwipe };
 inline constexpr std::size_t kLessonCount = 6;
 
-enum class Sign : std::uint8_t { kOpen, kClose, kTour, kNext, kLeave };
-inline constexpr std::size_t kSignCount = 5;
+enum class DwellButton : std::uint8_t { kOpen, kClose, kTour, kNext, kLeave };
+inline constexpr std::size_t kDwellButtonCount = 5;
 
 /// Places are shares of the panel's width and height, from its middle, to the right and up; the radius is a share of
 /// its height.
-struct SignPicture {
-  Sign sign{};
+struct DwellButtonPicture {
+  DwellButton button{};
   glm::dvec2 at{0.0};
   double radius = 0.09;
   double filled = 0.0;  ///< 0..1: how much of the rest is over
-  friend bool operator==(const SignPicture&, const SignPicture&) = default;
+  friend bool operator==(const DwellButtonPicture&, const DwellButtonPicture&) = default;
 };
 
-/// Of a sign on a panel that is `aspect` times as wide as high, and what is left free around it: shares of the panel's
-/// height.
-double sign_radius(double aspect) noexcept;
-inline constexpr double kSignMargin = 0.035;
+/// Of a button on a panel that is `aspect` times as wide as high, and what is left free around it: shares of the
+/// panel's height.
+double dwell_button_radius(double aspect) noexcept;
+inline constexpr double kDwellButtonMargin = 0.035;
 
-/// The places of some signs on a panel that is `aspect` times as wide as high: a column at the upper right, where hands
-/// that play with the object rarely rest.
-std::vector<SignPicture> place_signs(std::span<const Sign> signs, double aspect);
+/// The places of some buttons on a panel that is `aspect` times as wide as high: a column at the upper right, where
+/// hands that play with the object rarely rest.
+std::vector<DwellButtonPicture> place_buttons(std::span<const DwellButton> buttons, double aspect);
 
 /// Of a panel's height, above and below the object: what words take (app/panels/gallery_page.h).
 inline constexpr double kWordsShare = 0.2;
 
-/// The same signs on a panel of another shape, as full as they are.
-std::vector<SignPicture> signs_on(std::span<const SignPicture> signs, double aspect);
+/// The same buttons on a panel of another shape, as full as they are.
+std::vector<DwellButtonPicture> buttons_on(std::span<const DwellButtonPicture> buttons, double aspect);
 
 struct GalleryPicture {
   std::string line;                 ///< one sentence; empty: none
@@ -49,11 +49,11 @@ struct GalleryPicture {
   std::string title;                ///< of what is shown now; may be empty
   std::size_t step = 0, steps = 0;  ///< of a tour, counted from 1; 0: there is none
   std::optional<Lesson> lesson;
-  double lesson_s = 0.0;           ///< how far its moving hand is
-  double letter_mm = 8.0;          ///< height of the letters on the panel
-  double dark = 0.0;               ///< 0..1: how much of the light is taken away
-  std::vector<SignPicture> signs;  ///< that hands may rest on
-  std::vector<std::string> menu;   ///< rows of the operator's page; empty: closed
+  double lesson_s = 0.0;                    ///< how far its moving hand is
+  double letter_mm = 8.0;                   ///< height of the letters on the panel
+  double dark = 0.0;                        ///< 0..1: how much of the light is taken away
+  std::vector<DwellButtonPicture> buttons;  ///< that hands may rest on
+  std::vector<std::string> menu;            ///< rows of the operator's page; empty: closed
   friend bool operator==(const GalleryPicture&, const GalleryPicture&) = default;
 };
 

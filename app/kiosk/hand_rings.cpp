@@ -63,7 +63,7 @@ std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMa
   return out;
 }
 
-std::vector<LinesItem> higher_sign(const RingStage& stage, const glm::dvec3& place_m, double seconds) {
+std::vector<LinesItem> higher_arrow(const RingStage& stage, const glm::dvec3& place_m, double seconds) {
   const double height = stage.window_mm.y;
   const glm::dvec3 at = ring_place_mm(stage, place_m);
   const double shown = std::clamp(seconds / kArrowEaseS, 0.0, 1.0);

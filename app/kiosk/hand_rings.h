@@ -25,7 +25,7 @@ std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMa
 
 /// A ring that stays where a hand sank out of sight, and an arrow that rises from it: `seconds` of it are over. It
 /// comes slowly, and never blinks.
-std::vector<LinesItem> higher_sign(const RingStage& stage, const glm::dvec3& place_m, double seconds);
+std::vector<LinesItem> higher_arrow(const RingStage& stage, const glm::dvec3& place_m, double seconds);
 
 /// Where the nearest hand that holds or may take hold would take the object: on it, on the side where the hand is, the
 /// brighter the nearer the hand's ring is. Strength 0: nobody could.

@@ -73,7 +73,7 @@ bool KioskGuide::takes(const InputEvent& event, TimestampNs now) {
   if (event.kind == EventKind::kButton && event.down && event.at) {
     const glm::dvec2 at = *event.at * glm::dvec2(1.0 / asked_.aspect, 1.0);
     asked_.press = at;
-    if (sign_at(at, signs_, asked_.aspect)) return true;  // two taps on a sign are none on the object
+    if (button_at(at, buttons_, asked_.aspect)) return true;  // two taps on a button are none on the object
   }
   if (event.kind != EventKind::kKey) return false;  // a finger or a mouse may turn the object as a hand does
   const bool plain = (event.modifiers & (kControl | kAlt)) == 0;
@@ -115,7 +115,7 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
     if (view_) out.turned_deg = turn_between_deg(view_->rotation, steered.view.rotation);
     if (view_) out.zoomed = std::abs(std::log(steered.view.zoom / view_->zoom));
   }
-  if (asked_.press) out.hands = std::max(out.hands, 1);  // on a sign
+  if (asked_.press) out.hands = std::max(out.hands, 1);  // on a button
   out.swiped = steered.swiped;
   out.can_open = can_unpack(moment.document);
   out.toured = tour_.walks();
@@ -163,41 +163,42 @@ void KioskGuide::obey(OperatorWish wish, Guidance& out) {
                    Journal::words("key", std::string_view(&row.key, 1)) + ", " + Journal::words("does", row.words));
 }
 
-/// Signs that hands may rest on, and what they chose.
-std::optional<Sign> KioskGuide::choose(const GuideMoment& moment) {
-  std::vector<Sign> shown;
+/// Buttons that hands may rest on, and what they chose.
+std::optional<DwellButton> KioskGuide::choose(const GuideMoment& moment) {
+  std::vector<DwellButton> shown;
   const bool there = phase_ == VisitPhase::kFree || phase_ == VisitPhase::kArrived;
   if (tour_.walks()) {
-    shown = {Sign::kNext, Sign::kLeave};
+    shown = {DwellButton::kNext, DwellButton::kLeave};
   } else if (tour_.settling()) {  // not while things move
   } else if (phase_ == VisitPhase::kFree || (phase_ == VisitPhase::kArrived && motion_.unpack_goal > 0.5)) {
     if (can_unpack(moment.document) && motion_.unpack == motion_.unpack_goal)  // not while it moves
-      shown.push_back(motion_.unpack_goal > 0.5 ? Sign::kClose : Sign::kOpen);
+      shown.push_back(motion_.unpack_goal > 0.5 ? DwellButton::kClose : DwellButton::kOpen);
   }
   if (there && tour_.any() && !tour_.walks() && !tour_.settling() && motion_.unpack == motion_.unpack_goal)
-    shown.push_back(Sign::kTour);
+    shown.push_back(DwellButton::kTour);
   const double aspect = asked_.aspect = moment.window_mm.x / moment.window_mm.y;
-  signs_ = place_signs(shown, aspect);
-  std::vector<SignHand> hands;
+  buttons_ = place_buttons(shown, aspect);
+  std::vector<DwellHand> hands;
   const RingStage stage{parts_.zone, moment.window_mm, moment.middle_mm};
   for (const HandMark& hand : moment.steered.hands)
     if (hand.state <= HandState::kFist)
       hands.push_back({(glm::dvec2(ring_place_mm(stage, hand.place_m)) - moment.middle_mm) / moment.window_mm,
                        hand.state == HandState::kReady});
-  auto chosen = rest_.update(moment.now, hands, signs_, aspect);
-  for (SignPicture& sign : signs_) sign.filled = rest_.filled(sign.sign);
-  if (const auto press = std::exchange(asked_.press, {}); press && !chosen) chosen = sign_at(*press, signs_, aspect);
-  if (chosen) take_sign(*chosen, moment);
+  auto chosen = rest_.update(moment.now, hands, buttons_, aspect);
+  for (DwellButtonPicture& button : buttons_) button.filled = rest_.filled(button.button);
+  if (const auto press = std::exchange(asked_.press, {}); press && !chosen)
+    chosen = button_at(*press, buttons_, aspect);
+  if (chosen) take_button(*chosen, moment);
   return chosen;
 }
 
-void KioskGuide::take_sign(Sign sign, const GuideMoment& moment) {
-  switch (sign) {
-    case Sign::kOpen:
-    case Sign::kClose:
-      motion_.unpack_goal = sign == Sign::kOpen ? 1.0 : 0.0;
+void KioskGuide::take_button(DwellButton button, const GuideMoment& moment) {
+  switch (button) {
+    case DwellButton::kOpen:
+    case DwellButton::kClose:
+      motion_.unpack_goal = button == DwellButton::kOpen ? 1.0 : 0.0;
       break;
-    case Sign::kTour: {
+    case DwellButton::kTour: {
       Keyframe now = keyframe_of(moment.document, 0.0);
       now.camera = {moment.steered.view.rotation, moment.steered.view.zoom, moment.steered.view.pan};
       now.light = {moment.steered.view.light_azimuth_deg, moment.steered.view.light_elevation_deg};
@@ -206,10 +207,10 @@ void KioskGuide::take_sign(Sign sign, const GuideMoment& moment) {
       diary_.write("tour", fmt::format("\"step\": {}", tour_.at() + 1));
       break;
     }
-    case Sign::kNext:
+    case DwellButton::kNext:
       tour_.next();
       break;
-    case Sign::kLeave:
+    case DwellButton::kLeave:
       tour_.leave();
       break;
   }
@@ -312,7 +313,7 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
     out.title = text_in(parts_.profile.objects[object_].title, spoken);
   out.letter_mm = letter_height_mm(parts_.profile.eyes.reading_distance_m);
   out.dark = motion_.dark;
-  out.signs = signs_;
+  out.buttons = buttons_;
   if (menu_.open()) out.menu = operators_page();
   return out;
 }
@@ -352,7 +353,7 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   if (!motion_.begun && moment.surface) begin_tour(moment);
   VisitMoment noticed = notice(moment);
   const auto chosen = choose(moment);
-  noticed.chose_open = chosen == Sign::kOpen || chosen == Sign::kClose;
+  noticed.chose_open = chosen == DwellButton::kOpen || chosen == DwellButton::kClose;
   const VisitPicture visit = visit_.update(moment.now, noticed);
   phase_ = visit.phase;
   if (visit.arrived) diary_.write("visit");
@@ -383,9 +384,9 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   if (!hands.empty() && hands.front().state <= HandState::kFist) motion_.hand_m = hands.front().place_m;
   motion_.wants_higher = visit.higher_s.has_value();
   if (visit.higher_s)
-    for (LinesItem& item : higher_sign(stage, motion_.hand_m, *visit.higher_s)) out.lines.push_back(std::move(item));
+    for (LinesItem& item : higher_arrow(stage, motion_.hand_m, *visit.higher_s)) out.lines.push_back(std::move(item));
   out.gestures.signs_above =
-      std::any_of(signs_.begin(), signs_.end(), [](const SignPicture& sign) { return sign.at.y > 0.0; });
+      std::any_of(buttons_.begin(), buttons_.end(), [](const DwellButtonPicture& button) { return button.at.y > 0.0; });
   out.gestures.beginner = visit.phase == VisitPhase::kArrived;
   out.picture = picture(visit);
   return out;

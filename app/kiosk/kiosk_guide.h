@@ -7,12 +7,12 @@
 #include <string>
 #include <utility>
 
+#include "app/kiosk/dwell_buttons.h"
 #include "app/kiosk/hand_rings.h"
 #include "app/kiosk/kiosk_diary.h"
 #include "app/kiosk/kiosk_profile.h"
 #include "app/kiosk/operator_menu.h"
 #include "app/kiosk/service_notify.h"
-#include "app/kiosk/signs.h"
 #include "app/kiosk/tour_walk.h"
 #include "app/kiosk/visit.h"
 #include "app/tools/session_guide.h"
@@ -73,7 +73,7 @@ class KioskGuide final : public SessionGuide {
   /// What operators and fingers asked for since the last moment.
   struct Asked {
     std::vector<OperatorWish> wishes;
-    std::optional<glm::dvec2> press;  ///< shares of the panel, as signs
+    std::optional<glm::dvec2> press;  ///< shares of the panel, as buttons
     double aspect = 1.0;              ///< of the panel
   };
   /// What was told to others, and when.
@@ -83,10 +83,10 @@ class KioskGuide final : public SessionGuide {
     bool ended = false, ready = false;  ///< ready: to the service manager
   };
   VisitMoment notice(const GuideMoment& moment);
-  std::optional<Sign> choose(const GuideMoment& moment);
+  std::optional<DwellButton> choose(const GuideMoment& moment);
   void obey(OperatorWish wish, Guidance& out);
   void begin_tour(const GuideMoment& moment);
-  void take_sign(Sign sign, const GuideMoment& moment);
+  void take_button(DwellButton button, const GuideMoment& moment);
   void walk(const GuideMoment& moment, Guidance& out);
   void move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out);
   GalleryPicture picture(const VisitPicture& visit) const;
@@ -100,8 +100,8 @@ class KioskGuide final : public SessionGuide {
   Asked asked_;
   TourWalk tour_;
   Motion motion_;
-  SignRest rest_;
-  std::vector<SignPicture> signs_;
+  DwellTimer rest_;
+  std::vector<DwellButtonPicture> buttons_;
   VisitPhase phase_ = VisitPhase::kAttract;
   std::optional<ViewState> view_;  // of the last moment
   std::size_t object_ = 0, language_ = 0;

@@ -83,13 +83,13 @@ class ScreenDirector final : public SessionGuide {
     steered.hands = {hand};
   }
 
-  void press(const GalleryPicture& picture, Sign wanted, double aspect) {
-    for (const SignPicture& sign : picture.signs) {
-      if (sign.sign != wanted) continue;
+  void press(const GalleryPicture& picture, DwellButton wanted, double aspect) {
+    for (const DwellButtonPicture& button : picture.buttons) {
+      if (button.button != wanted) continue;
       InputEvent event;
       event.kind = EventKind::kButton;
       event.down = true;
-      event.at = sign.at * glm::dvec2(aspect, 1.0);
+      event.at = button.at * glm::dvec2(aspect, 1.0);
       kiosk_.takes(event, now_);
     }
   }
@@ -118,7 +118,7 @@ class ScreenDirector final : public SessionGuide {
         took("object", At::kText);
         break;
       case At::kText:
-        if (picture.steps == 0) press(picture, Sign::kTour, aspect_);
+        if (picture.steps == 0) press(picture, DwellButton::kTour, aspect_);
         if (picture.steps > 0 && settled()) took("text", At::kPeel);
         if (picture.steps == 0 && now_ - since_ > 2 * kSettles) next(At::kPeel);
         break;
@@ -139,14 +139,14 @@ class ScreenDirector final : public SessionGuide {
     }
   }
 
-  /// Of the tour, else of the sign; when the envelope has gone for the most part.
+  /// Of the tour, else of the button; when the envelope has gone for the most part.
   void look_at_peel(const GalleryPicture& picture, const Guidance& out) {
     const double open = out.scene ? out.scene->frame.unpack : 0.0;
     if (open >= 0.7) return took("peel", At::kOperator);
     if (picture.steps > 0 && picture.step == picture.steps && now_ - since_ > kSettles) return next(At::kOperator);
     if (picture.steps == 0) return next(At::kOperator);
     if (open == 0.0 && now_ - since_ > kSecondNs) {
-      press(picture, Sign::kNext, aspect_);
+      press(picture, DwellButton::kNext, aspect_);
       since_ = now_;
     }
   }

@@ -16,7 +16,7 @@ namespace dubsar::app {
 /// What a hand that is not told what to do finds out.
 struct VisitChances {
   double held_deg = 0.0;  ///< the object's turn between the beginning of this hold and now; 0: nothing is held
-  bool can_tour = false;  ///< there is a sign that begins a tour
+  bool can_tour = false;  ///< there is a button that begins a tour
 };
 
 /// What is known at one moment.
@@ -33,7 +33,7 @@ struct VisitMoment : VisitChances {
   double zoomed = 0.0;                 ///< |logarithm| of the zoom by hands, since the last moment
   bool swiped = false;
   bool toured = false;                        ///< a tour is shown: somebody looks on, and is not taught
-  bool can_open = false, chose_open = false;  ///< there is an envelope; a hand rested on its sign
+  bool can_open = false, chose_open = false;  ///< there is an envelope; a hand rested on its button
 };
 
 enum class VisitPhase : std::uint8_t { kAsleep, kAttract, kArrived, kFree, kLeaving };

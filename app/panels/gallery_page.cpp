@@ -69,14 +69,14 @@ void draw_steps(const GalleryPicture& picture, float width, float y, float radiu
   }
 }
 
-/// A title, and below it a tour's steps, in what signs leave of the width.
+/// A title, and below it a tour's steps, in what buttons leave of the width.
 void draw_title(const GalleryPicture& picture, float size_px, float width, float height) {
   if (picture.title.empty() && picture.steps == 0) return;
   float room = width;
-  for (const SignPicture& sign : picture.signs)
-    if (sign.at.y + sign.radius > 0.5 - kWordsShare)
-      room = std::min(room,
-                      (0.5f + static_cast<float>(sign.at.x)) * width - 1.1f * static_cast<float>(sign.radius) * height);
+  for (const DwellButtonPicture& button : picture.buttons)
+    if (button.at.y + button.radius > 0.5 - kWordsShare)
+      room = std::min(
+          room, (0.5f + static_cast<float>(button.at.x)) * width - 1.1f * static_cast<float>(button.radius) * height);
   const SetWords set = set_words(picture.title, kTitleLarger * size_px, room, picture.right_to_left);
   const float top = 0.03f * height, below = top + static_cast<float>(set.tall) + 0.3f * size_px;
   fill_band(0.0f, below + (picture.steps > 0 ? 0.5f * size_px : 0.0f), width, picture.dark);
@@ -103,11 +103,11 @@ void draw_menu(const std::vector<std::string>& rows, float size_px, float width,
   }
 }
 
-/// A sign is a disc with a picture that needs no words, and a ring that fills while a hand rests on it.
-void draw_sign(const SignPicture& sign, float width, float height) {
+/// A button is a disc with a picture that needs no words, and a ring that fills while a hand rests on it.
+void draw_dwell_button(const DwellButtonPicture& button, float width, float height) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float r = static_cast<float>(sign.radius) * height;
-  const ImVec2 at((0.5f + static_cast<float>(sign.at.x)) * width, (0.5f - static_cast<float>(sign.at.y)) * height);
+  const float r = static_cast<float>(button.radius) * height;
+  const ImVec2 at((0.5f + static_cast<float>(button.at.x)) * width, (0.5f - static_cast<float>(button.at.y)) * height);
   const ImU32 ground = ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.82f));
   const ImU32 pale = ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f));
   const ImU32 amber = ImGui::GetColorU32(ImVec4(0.85f, 0.64f, 0.25f, 1.0f));
@@ -116,31 +116,31 @@ void draw_sign(const SignPicture& sign, float width, float height) {
   const float stroke = 0.07f * r;
   list.AddCircleFilled(at, r, ground, 48);
   list.AddCircle(at, r, pale, 48, 0.5f * stroke);
-  const bool open = sign.sign == Sign::kOpen;
-  switch (sign.sign) {
-    case Sign::kOpen:  // the envelope goes up from the tablet, or comes back
-    case Sign::kClose:
+  const bool open = button.button == DwellButton::kOpen;
+  switch (button.button) {
+    case DwellButton::kOpen:  // the envelope goes up from the tablet, or comes back
+    case DwellButton::kClose:
       list.AddRectFilled(place(-0.22f, 0.05f), place(0.22f, 0.6f), clay, 0.1f * r);
       list.AddRect(place(-0.32f, open ? -0.62f : -0.1f), place(0.32f, open ? -0.05f : 0.68f), pale, 0.15f * r, 0,
                    stroke);
       list.AddTriangleFilled(place(-0.72f, open ? 0.1f : -0.1f), place(-0.4f, open ? 0.1f : -0.1f),
                              place(-0.56f, open ? -0.25f : 0.25f), pale);
       break;
-    case Sign::kTour:
+    case DwellButton::kTour:
       list.AddTriangleFilled(place(-0.3f, -0.45f), place(-0.3f, 0.45f), place(0.5f, 0.0f), pale);
       break;
-    case Sign::kNext:
+    case DwellButton::kNext:
       list.AddTriangleFilled(place(-0.4f, -0.4f), place(-0.4f, 0.4f), place(0.2f, 0.0f), pale);
       list.AddRectFilled(place(0.25f, -0.4f), place(0.4f, 0.4f), pale);
       break;
-    case Sign::kLeave:
+    case DwellButton::kLeave:
       list.AddLine(place(-0.35f, -0.35f), place(0.35f, 0.35f), pale, 2.0f * stroke);
       list.AddLine(place(-0.35f, 0.35f), place(0.35f, -0.35f), pale, 2.0f * stroke);
       break;
   }
-  if (sign.filled <= 0.0) return;
+  if (button.filled <= 0.0) return;
   constexpr float kTop = -0.5f * std::numbers::pi_v<float>;
-  list.PathArcTo(at, 1.08f * r, kTop, kTop + 2.0f * std::numbers::pi_v<float> * static_cast<float>(sign.filled), 48);
+  list.PathArcTo(at, 1.08f * r, kTop, kTop + 2.0f * std::numbers::pi_v<float> * static_cast<float>(button.filled), 48);
   list.PathStroke(amber, 0, 0.16f * r);
 }
 
@@ -200,7 +200,7 @@ void draw_gallery(const GalleryPicture& picture, float width, float height, floa
     draw_lesson(lesson_pose(*picture.lesson, picture.lesson_s), x, y, radius);
   }
   draw_title(picture, size, width, height);
-  for (const SignPicture& sign : picture.signs) draw_sign(sign, width, height);
+  for (const DwellButtonPicture& button : picture.buttons) draw_dwell_button(button, width, height);
   if (!picture.menu.empty()) draw_menu(picture.menu, std::max(size * 0.6f, 14.0f), width, height);
   ImGui::End();
   ImGui::PopStyleVar();

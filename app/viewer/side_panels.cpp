@@ -44,7 +44,7 @@ Shown shown_on(const Shown& main, const PanelPlane& of_main, const PanelPlane& h
 
 GalleryPicture gallery_on(const GalleryPicture& main, double aspect) {
   GalleryPicture out = main;
-  out.signs = signs_on(main.signs, aspect);
+  out.buttons = buttons_on(main.buttons, aspect);
   out.menu.clear();
   return out;
 }
@@ -208,7 +208,7 @@ Result<void> SidePanels::follow(Viewer& viewer, TimestampNs now, const std::stri
   return done;
 }
 
-/// Sentences and signs of whoever leads the session, as large as the reader needs them here.
+/// Sentences and buttons of whoever leads the session, as large as the reader needs them here.
 Result<void> SidePanels::say(Panel& panel, const Viewer& viewer) {
   if (!viewer.guidance().picture) return {};
   if (!panel.words) {

@@ -21,8 +21,8 @@ struct PanelPlane {
   LabelFont* font = nullptr;  ///< of its context
 };
 Shown shown_on(const Shown& main, const PanelPlane& of_main, const PanelPlane& here);
-/// What a gallery says on a panel that is `aspect` times as wide as high: the same sentences, lesson, light and signs;
-/// the operator's menu is the main panel's.
+/// What a gallery says on a panel that is `aspect` times as wide as high: the same sentences, lesson, light and
+/// buttons; the operator's menu is the main panel's.
 GalleryPicture gallery_on(const GalleryPicture& main, double aspect);
 
 /// One that cannot be had is tried again every 2 s where time is real, and one whose monitor is gone is taken down

@@ -106,7 +106,7 @@ TEST_F(Kiosk, ATourIsWrittenChangedWalkedAndRefusedInOneSentence) {
   json with = profile();
   with["objects"][0]["tour"] = "mine.json";
   write("kiosk.json", with.dump());
-  // A hand rests on the second sign from above of the right side, and goes; seen before and while the tour goes on.
+  // A hand rests on the second button from above of the right side, and goes; seen before and while the tour goes on.
   write("visitor.json",
         R"({"seed": 3, "duration_s": 11, "rate_hz": 60, "hands": [{"chirality": "right", "keys": [
         {"t": 1.0, "at_mm": [100, -90, 270]}, {"t": 1.8, "at_mm": [200, 10, 250]}, {"t": 2.6, "at_mm": [200, 10, 250]},
@@ -117,7 +117,7 @@ TEST_F(Kiosk, ATourIsWrittenChangedWalkedAndRefusedInOneSentence) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto before = read_png(file("p/frame-00030.png")), told = read_png(file("p/frame-00085.png"));
   ASSERT_TRUE(before && told);
-  const auto clay = [](const Image& image) {  // of the right half of the middle row: signs are lower and higher
+  const auto clay = [](const Image& image) {  // of the right half of the middle row: buttons are lower and higher
     int count = 0;
     for (int x = image.width / 2; x < image.width * 3 / 4; ++x) count += *image.at(x, image.height * 2 / 5) > 90;
     return count;

@@ -154,19 +154,19 @@ TEST_F(GalleryPictures, AFurtherPanelSaysAndShowsWhatItWouldAsTheOnlyOne) {
 TEST(GalleryOn, SignsStandAtTheEdgeOfEveryPanelAndTheMenuOnTheFirstOnly) {
   GalleryPicture main;
   main.line = "Reach out your hand";
-  main.signs = place_signs(std::array{Sign::kOpen, Sign::kTour}, 16.0 / 9.0);
-  main.signs[1].filled = 0.4;
+  main.buttons = place_buttons(std::array{DwellButton::kOpen, DwellButton::kTour}, 16.0 / 9.0);
+  main.buttons[1].filled = 0.4;
   main.menu = {"9  end"};
   const GalleryPicture here = gallery_on(main, 9.0 / 16.0);
   EXPECT_EQ(here.line, main.line);
   EXPECT_TRUE(here.menu.empty());
-  ASSERT_EQ(here.signs.size(), 2U);
-  for (const SignPicture& sign : here.signs) {
-    const double right = (0.5 - sign.at.x) * 9.0 / 16.0;  // of the panel's height, to its edge
-    EXPECT_GT(right, sign.radius);
-    EXPECT_LT(right, sign.radius + 0.05);
+  ASSERT_EQ(here.buttons.size(), 2U);
+  for (const DwellButtonPicture& button : here.buttons) {
+    const double right = (0.5 - button.at.x) * 9.0 / 16.0;  // of the panel's height, to its edge
+    EXPECT_GT(right, button.radius);
+    EXPECT_LT(right, button.radius + 0.05);
   }
-  EXPECT_EQ(here.signs[1].filled, 0.4);
+  EXPECT_EQ(here.buttons[1].filled, 0.4);
 }
 
 TEST_F(GalleryPictures, AHandIsInAPictureATenthOfASecondAfterItCameWithTenPicturesASecond) {

@@ -83,11 +83,11 @@ void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
     if (person_.hands[h] != nullptr && Gallery::is_the_visitors(person_.hands[h]->id) && !screen_.my_mark)
       screen_.my_mark =
           glm::dvec2(ring_place_mm({zone(), kWindowMm, {0, 0}}, navigator_.hands()[h].position_m())) / kWindowMm.y;
-  for (const SignPicture& sign : guidance_.picture->signs)
-    if (sign.sign == Sign::kOpen || sign.sign == Sign::kClose) {
-      screen_.sign = sign.at * glm::dvec2(kWindowMm.x / kWindowMm.y, 1.0);
-      screen_.sign_radius = sign.radius;
-      screen_.sign_filled = sign.filled;
+  for (const DwellButtonPicture& button : guidance_.picture->buttons)
+    if (button.button == DwellButton::kOpen || button.button == DwellButton::kClose) {
+      screen_.sign = button.at * glm::dvec2(kWindowMm.x / kWindowMm.y, 1.0);
+      screen_.sign_radius = button.radius;
+      screen_.sign_filled = button.filled;
     }
 }
 

@@ -39,33 +39,33 @@ TEST(KioskGuide, SaysTheTitleAndInvitesInTheLanguageOfTheOperator) {
   EXPECT_EQ(kiosk.go_on(0.1).picture->title, "A");
 }
 
-/// A hand whose ring lies on a sign of a panel of 600 x 340 mm.
-Steered on_the_sign(double turned_deg = 0.0, Sign which = Sign::kOpen) {
+/// A hand whose ring lies on a button of a panel of 600 x 340 mm.
+Steered on_the_button(double turned_deg = 0.0, DwellButton which = DwellButton::kOpen) {
   Steered out = with_hand(HandState::kReady, Control::kNone, turned_deg);
   const HandZone zone;
-  const auto sign = place_signs(std::array{which}, 600.0 / 340.0).front();
+  const auto button = place_buttons(std::array{which}, 600.0 / 340.0).front();
   const glm::dvec2 middle = 0.5 * glm::dvec2(zone.min_m + zone.max_m), half = 0.5 * glm::dvec2(zone.max_m - zone.min_m);
-  out.hands[0].place_m = glm::dvec3(middle + half * sign.at / 0.45, 0.2);
+  out.hands[0].place_m = glm::dvec3(middle + half * button.at / 0.45, 0.2);
   return out;
 }
 
 TEST(KioskGuide, RestingOnTheSignOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned) {
   Kiosk kiosk;
   kiosk.go_on(1, with_hand(HandState::kReady));
-  kiosk.go_on(4, on_the_sign());
-  EXPECT_EQ(kiosk.document().unpack, 0.0) << "there is no sign yet";
+  kiosk.go_on(4, on_the_button());
+  EXPECT_EQ(kiosk.document().unpack, 0.0) << "there is no button yet";
   for (int i = 0; i < 20; ++i) kiosk.go_on(0.05, with_hand(HandState::kHolding, Control::kHands, 2.0 * i));
   kiosk.go_on(4, with_hand(HandState::kReady, Control::kNone, 38.0));
-  EXPECT_EQ(kiosk.document().unpack, 0.0) << "a hand beside the sign";
-  const auto half = kiosk.go_on(1, on_the_sign(38.0));
-  ASSERT_EQ(half.picture->signs.size(), 2U);
-  EXPECT_GT(half.picture->signs[0].filled, 0.3);
-  EXPECT_LT(half.picture->signs[0].filled, 0.9);
-  kiosk.go_on(4, on_the_sign(38.0));
+  EXPECT_EQ(kiosk.document().unpack, 0.0) << "a hand beside the button";
+  const auto half = kiosk.go_on(1, on_the_button(38.0));
+  ASSERT_EQ(half.picture->buttons.size(), 2U);
+  EXPECT_GT(half.picture->buttons[0].filled, 0.3);
+  EXPECT_LT(half.picture->buttons[0].filled, 0.9);
+  kiosk.go_on(4, on_the_button(38.0));
   EXPECT_EQ(kiosk.document().unpack, 1.0);
-  const auto later = kiosk.go_on(10, on_the_sign(38.0));  // the hand stays: it does not close again
+  const auto later = kiosk.go_on(10, on_the_button(38.0));  // the hand stays: it does not close again
   EXPECT_EQ(kiosk.document().unpack, 1.0);
-  EXPECT_EQ(later.picture->signs.at(0).sign, Sign::kClose);
+  EXPECT_EQ(later.picture->buttons.at(0).button, DwellButton::kClose);
   double last = 0.0, largest = 0.0;
   for (const std::string& command : kiosk.commands)
     if (command.rfind("unpack ", 0) == 0) {
@@ -81,8 +81,8 @@ TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
   profile.idle_reset_s = 20;
   Kiosk kiosk(profile);
   kiosk.go_on(1, with_hand(HandState::kReady));
-  const auto starts = kiosk.go_on(2.5, on_the_sign(0.0, Sign::kTour));
-  ASSERT_TRUE(starts.scene) << "a hand that rests on the sign begins it, without ever having closed";
+  const auto starts = kiosk.go_on(2.5, on_the_button(0.0, DwellButton::kTour));
+  ASSERT_TRUE(starts.scene) << "a hand that rests on the button begins it, without ever having closed";
   EXPECT_EQ(starts.picture->title, Words().say(Line::kTourSealed, "en"));
   EXPECT_EQ(starts.picture->steps, 5U);
   EXPECT_FALSE(starts.picture->lesson);
@@ -95,7 +95,7 @@ TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
   EXPECT_FALSE(back.scene->camera) << "a hand that takes hold has it at once";
   const auto free = kiosk.go_on(3.0, with_hand(HandState::kReady));
   EXPECT_FALSE(free.scene);
-  const auto again = kiosk.go_on(2.5, on_the_sign(0.0, Sign::kTour));
+  const auto again = kiosk.go_on(2.5, on_the_button(0.0, DwellButton::kTour));
   ASSERT_TRUE(again.scene);
   EXPECT_EQ(again.picture->step, peel.picture->step) << "where it was left";
   kiosk.go_on(32.0);
@@ -112,10 +112,10 @@ TEST(KioskGuide, TheTourOfAnObjectIsThatOfItsFileOnceItIsRead) {
   Kiosk kiosk(profile);
   kiosk.reads();
   kiosk.go_on(1, with_hand(HandState::kReady));
-  EXPECT_FALSE(kiosk.go_on(2.5, on_the_sign(0.0, Sign::kTour)).scene) << "of what is not there yet";
+  EXPECT_FALSE(kiosk.go_on(2.5, on_the_button(0.0, DwellButton::kTour)).scene) << "of what is not there yet";
   kiosk.has_read();
   kiosk.go_on(1, with_hand(HandState::kReady));
-  const auto starts = kiosk.go_on(2.5, on_the_sign(0.0, Sign::kTour));
+  const auto starts = kiosk.go_on(2.5, on_the_button(0.0, DwellButton::kTour));
   ASSERT_TRUE(starts.scene);
   EXPECT_EQ(starts.picture->steps, 5U) << "with the envelope, which was not known before";
   kiosk.guide().begin_object();
@@ -191,9 +191,9 @@ TEST(KioskGuide, AFingerOnTheGlassChoosesASignAtOnce) {
   InputEvent event;
   event.kind = EventKind::kButton;
   event.down = true;
-  const auto sign = place_signs(std::array{Sign::kTour}, 600.0 / 340.0).front();
-  event.at = sign.at * glm::dvec2(600.0 / 340.0, 1.0);
-  EXPECT_TRUE(kiosk.guide().takes(event, 0)) << "twice on a sign is not twice on the object";
+  const auto button = place_buttons(std::array{DwellButton::kTour}, 600.0 / 340.0).front();
+  event.at = button.at * glm::dvec2(600.0 / 340.0, 1.0);
+  EXPECT_TRUE(kiosk.guide().takes(event, 0)) << "twice on a button is not twice on the object";
   EXPECT_TRUE(kiosk.go_on(0.1, with_hand(HandState::kReady)).scene);
   event.at = glm::dvec2(0.0, 0.0);
   EXPECT_FALSE(kiosk.guide().takes(event, 0));
@@ -216,7 +216,7 @@ TEST(KioskGuide, WithATouchPanelAloneItInvitesFingersAndTeachesNoFists) {
   EXPECT_EQ(kiosk.guide().visit().counts().visits, 1);
   EXPECT_EQ(kiosk.guide().visit().counts().done[static_cast<std::size_t>(Lesson::kTurn)], 1);
   EXPECT_EQ(kiosk.guide().visit().counts().done[static_cast<std::size_t>(Lesson::kTwoHands)], 1);
-  EXPECT_FALSE(kiosk.go_on(0.1, Steered()).picture->signs.empty()) << "what a tap can choose is there";
+  EXPECT_FALSE(kiosk.go_on(0.1, Steered()).picture->buttons.empty()) << "what a tap can choose is there";
   kiosk.set_sources({{"mouse", SourceHealth::kPresent, ""}, {"touch", SourceHealth::kLost, "unplugged"}});
   kiosk.go_on(120);
   EXPECT_EQ(kiosk.go_on(1).picture->line, words.say(Line::kNoTracker, "en"));
@@ -313,9 +313,9 @@ TEST(HandRings, TheArrowRisesFromWhereTheHandSankWithinThePanelAndNeverBlinks) {
   const glm::dvec3 sank{0.1, -0.4, 0.3}, ring = ring_place_mm(stage, sank);
   double last = 0.0;
   for (double t = 0.0; t < 6.0; t += 1.0 / 60.0) {
-    const std::vector<LinesItem> sign = higher_sign(stage, sank, t);
-    ASSERT_FALSE(sign.empty());
-    const LinesItem& arrow = sign.back();
+    const std::vector<LinesItem> button = higher_arrow(stage, sank, t);
+    ASSERT_FALSE(button.empty());
+    const LinesItem& arrow = button.back();
     ASSERT_EQ(arrow.points_mm.size(), 6U);
     EXPECT_GT(arrow.points_mm[0].y, ring.y);
     EXPECT_GT(arrow.points_mm[1].y, arrow.points_mm[0].y + 20.0) << "upwards";

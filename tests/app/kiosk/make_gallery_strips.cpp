@@ -21,7 +21,7 @@ constexpr double kFps = 20.0, kLongestSeconds = 31.0;
 constexpr int kEvery = 22;  // steps a picture
 constexpr int kColumns = 4, kRows = 3, kTileWidth = 480, kTileHeight = 360;
 /// Seconds of the script, each that of a picture: nobody, a hand is there, it takes hold, it has turned the tablet,
-/// rests on the sign, what was inside is out, everything is as at the beginning.
+/// rests on the button, what was inside is out, everything is as at the beginning.
 constexpr std::array<double, 7> kMoments{1.1, 4.4, 6.6, 7.7, 12.1, 15.4, 29.7};
 
 Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script, const std::string& display, int width,
