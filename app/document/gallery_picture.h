@@ -12,8 +12,8 @@
 namespace dubsar::app {
 
 /// Things a visitor may learn, in the order in which they are taught.
-enum class Lesson : std::uint8_t { kShowHand, kGrab, kTurn, kRest, kTwoHands, kSwipe };
-inline constexpr std::size_t kLessonCount = 6;
+enum class Tutorial : std::uint8_t { kShowHand, kGrab, kTurn, kRest, kTwoHands, kSwipe };
+inline constexpr std::size_t kTutorialCount = 6;
 
 enum class DwellButton : std::uint8_t { kOpen, kClose, kTour, kNext, kLeave };
 inline constexpr std::size_t kDwellButtonCount = 5;
@@ -48,8 +48,8 @@ struct GalleryPicture {
   bool right_to_left = false;       ///< how it is set
   std::string title;                ///< of what is shown now; may be empty
   std::size_t step = 0, steps = 0;  ///< of a tour, counted from 1; 0: there is none
-  std::optional<Lesson> lesson;
-  double lesson_s = 0.0;                    ///< how far its moving hand is
+  std::optional<Tutorial> tutorial;
+  double tutorial_s = 0.0;                  ///< how far its moving hand is
   double letter_mm = 8.0;                   ///< height of the letters on the panel
   double dark = 0.0;                        ///< 0..1: how much of the light is taken away
   std::vector<DwellButtonPicture> buttons;  ///< that hands may rest on

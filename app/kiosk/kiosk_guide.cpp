@@ -300,12 +300,12 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
   if (visit.phase == VisitPhase::kAttract && (parts_.flat || !told_.panel.empty()))
     out.line = parts_.words.say(Line::kNoPanel, spoken);
   out.right_to_left = Words::right_to_left(spoken);
-  out.lesson = visit.lesson;
-  out.lesson_s = visit.lesson_s;
+  out.tutorial = visit.tutorial;
+  out.tutorial_s = visit.tutorial_s;
   if (const TourStep* const step = tour_.step()) {
     out.title = text_in(step->title, spoken);
     out.line = text_in(step->text, spoken);
-    out.lesson.reset();
+    out.tutorial.reset();
     out.step = tour_.at() + 1;
     out.steps = tour_.steps();
   }
@@ -368,9 +368,9 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
       diary_.write(
           "hour",
           fmt::format("\"visits\": {}, \"resets\": {}, \"turned\": {}, \"zoomed\": {}, \"opened\": {}, \"tours\": {}",
-                      counts.visits, counts.resets, counts.done[static_cast<std::size_t>(Lesson::kTurn)],
-                      counts.done[static_cast<std::size_t>(Lesson::kTwoHands)],
-                      counts.done[static_cast<std::size_t>(Lesson::kRest)], told_.tours));
+                      counts.visits, counts.resets, counts.done[static_cast<std::size_t>(Tutorial::kTurn)],
+                      counts.done[static_cast<std::size_t>(Tutorial::kTwoHands)],
+                      counts.done[static_cast<std::size_t>(Tutorial::kRest)], told_.tours));
       notify_.status(fmt::format("{} visits", counts.visits));
     }
     told_.hour = hour;

@@ -9,7 +9,7 @@ namespace dubsar::app {
 namespace {
 
 constexpr double kStepsASecond = 5.0, kLongestScreensS = 60.0;
-constexpr TimestampNs kSettles = 3 * kSecondNs;  // longer than light, glow and lessons take to come
+constexpr TimestampNs kSettles = 3 * kSecondNs;  // longer than light, glow and tutorials take to come
 constexpr const char* kScreensPin = "90210735";  // of a profile that has none
 
 /// Says nothing, and counts as a sensor of hands.
@@ -108,13 +108,13 @@ class ScreenDirector final : public SessionGuide {
         if (settled()) took("attract", At::kTeaching);
         break;
       case At::kTeaching:
-        if (settled() && picture.lesson) took("teaching", At::kTurns);
+        if (settled() && picture.tutorial) took("teaching", At::kTurns);
         break;
       case At::kTurns:
         if (settled()) next(At::kObject);
         break;
       case At::kObject:
-        if (!picture.line.empty() || picture.lesson) break;
+        if (!picture.line.empty() || picture.tutorial) break;
         took("object", At::kText);
         break;
       case At::kText:

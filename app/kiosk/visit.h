@@ -40,19 +40,19 @@ enum class VisitPhase : std::uint8_t { kAsleep, kAttract, kArrived, kFree, kLeav
 
 struct VisitPicture {
   VisitPhase phase = VisitPhase::kAttract;
-  std::optional<Line> line;        ///< said now
-  std::optional<Lesson> lesson;    ///< shown as a moving hand
-  double lesson_s = 0.0;           ///< since it is shown
-  std::optional<double> higher_s;  ///< the hand that sank out of sight is wanted higher up, for so long already
-  bool reset = false;              ///< now, once: all is to go back to the beginning
-  bool arrived = false;            ///< now, once: a visit began
+  std::optional<Line> line;          ///< said now
+  std::optional<Tutorial> tutorial;  ///< shown as a moving hand
+  double tutorial_s = 0.0;           ///< since it is shown
+  std::optional<double> higher_s;    ///< the hand that sank out of sight is wanted higher up, for so long already
+  bool reset = false;                ///< now, once: all is to go back to the beginning
+  bool arrived = false;              ///< now, once: a visit began
 };
 
 struct VisitFigures {
   double idle_reset_s = 90.0, attract_after_s = 8.0;
 };
 
-/// Who can do a thing is not taught it: a lesson waits until its time has come, is shown for a while, rests, and is
+/// Who can do a thing is not taught it: a tutorial waits until its time has come, is shown for a while, rests, and is
 /// over for this visit when it was done or was shown three times. One thread.
 class Visit {
  public:
@@ -61,15 +61,15 @@ class Visit {
 
   struct Counts {
     std::int64_t visits = 0, resets = 0, openings = 0;  ///< of the envelope, and closings
-    std::array<std::int64_t, kLessonCount> done{};      ///< visits in which it was done
+    std::array<std::int64_t, kTutorialCount> done{};    ///< visits in which it was done
   };
   const Counts& counts() const noexcept { return counts_; }
 
  private:
   struct Course {
-    std::array<bool, kLessonCount> done{};
-    std::array<int, kLessonCount> shown{};
-    std::optional<Lesson> now;
+    std::array<bool, kTutorialCount> done{};
+    std::array<int, kTutorialCount> shown{};
+    std::optional<Tutorial> now;
     TimestampNs since = 0, rests_until = 0;
     double turned_deg = 0.0, zoomed = 0.0;
     TimestampNs followed = -1;  // a hand of this visitor was seen last; -1: there is none that sank
@@ -80,8 +80,8 @@ class Visit {
   };
   void begin(TimestampNs now);
   void learn(const VisitMoment& moment);
-  void done(Lesson lesson);
-  std::optional<Lesson> next(const VisitMoment& moment) const;
+  void done(Tutorial tutorial);
+  std::optional<Tutorial> next(const VisitMoment& moment) const;
   void teach(TimestampNs now, const VisitMoment& moment);
   void ask_for_height(TimestampNs now, const VisitMoment& moment);
   std::optional<double> sunk_s(TimestampNs now, const VisitMoment& moment);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "app/panels/lesson_picture.h"
 #include "app/panels/panel_font.h"
+#include "app/panels/tutorial_picture.h"
 #include "app/stage/ground_color.h"
 #include "app/stage/right_to_left.h"
 
@@ -191,13 +191,13 @@ void draw_gallery(const GalleryPicture& picture, float width, float height, floa
                        ImGui::GetColorU32(ImVec4(0.0f, 0.0f, 0.0f, static_cast<float>(picture.dark))));
   const auto size = static_cast<float>(letters_size(picture.letter_mm, height, px_per_mm));
   draw_sentence(picture, size, width, height);
-  if (picture.lesson) {
+  if (picture.tutorial) {
     // Beside the object where there is room, else above the words.
     const bool wide = width > 1.25f * height;
     const float radius = wide ? std::min(0.2f * height, 0.16f * width) : std::min(0.14f * height, 0.2f * width);
     const float x = wide ? 1.25f * radius : 0.5f * width,
                 y = wide ? 0.55f * height : (1.0f - static_cast<float>(kWordsShare)) * height - 1.15f * radius;
-    draw_lesson(lesson_pose(*picture.lesson, picture.lesson_s), x, y, radius);
+    draw_tutorial(tutorial_pose(*picture.tutorial, picture.tutorial_s), x, y, radius);
   }
   draw_title(picture, size, width, height);
   for (const DwellButtonPicture& button : picture.buttons) draw_dwell_button(button, width, height);

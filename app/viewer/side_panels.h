@@ -21,7 +21,7 @@ struct PanelPlane {
   LabelFont* font = nullptr;  ///< of its context
 };
 Shown shown_on(const Shown& main, const PanelPlane& of_main, const PanelPlane& here);
-/// What a gallery says on a panel that is `aspect` times as wide as high: the same sentences, lesson, light and
+/// What a gallery says on a panel that is `aspect` times as wide as high: the same sentences, tutorial, light and
 /// buttons; the operator's menu is the main panel's.
 GalleryPicture gallery_on(const GalleryPicture& main, double aspect);
 

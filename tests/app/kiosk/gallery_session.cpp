@@ -7,19 +7,19 @@ namespace {
 
 constexpr glm::dvec2 kWindowMm{600.0, 340.0};
 
-SeenLesson as_seen(const std::optional<Lesson>& lesson) {
-  if (!lesson) return SeenLesson::kNone;
-  switch (*lesson) {
-    case Lesson::kShowHand:
+SeenLesson as_seen(const std::optional<Tutorial>& tutorial) {
+  if (!tutorial) return SeenLesson::kNone;
+  switch (*tutorial) {
+    case Tutorial::kShowHand:
       return SeenLesson::kShowHand;
-    case Lesson::kGrab:
-    case Lesson::kTurn:
+    case Tutorial::kGrab:
+    case Tutorial::kTurn:
       return SeenLesson::kGrabAndMove;
-    case Lesson::kRest:
+    case Tutorial::kRest:
       return SeenLesson::kRestOnSign;
-    case Lesson::kTwoHands:
+    case Tutorial::kTwoHands:
       return SeenLesson::kNearer;
-    case Lesson::kSwipe:
+    case Tutorial::kSwipe:
       break;
   }
   return SeenLesson::kSwipe;
@@ -78,7 +78,7 @@ void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
     screen_.opened = scene->frame.unpack > 0.05;
   }
   screen_.arrow_up = guide_.wants_higher();
-  screen_.lesson = as_seen(guidance_.picture->lesson);
+  screen_.lesson = as_seen(guidance_.picture->tutorial);
   for (std::size_t h = 0; h < 2; ++h)
     if (person_.hands[h] != nullptr && Gallery::is_the_visitors(person_.hands[h]->id) && !screen_.my_mark)
       screen_.my_mark =

@@ -1,6 +1,6 @@
 #pragma once
-// A naive visitor's minute before the kiosk as it is: its guide, its lessons, its marks and its mapping; and what came
-// of it.
+// A naive visitor's minute before the kiosk as it is: its guide, its tutorials, its marks and its mapping; and what
+// came of it.
 
 #include <array>
 #include <optional>

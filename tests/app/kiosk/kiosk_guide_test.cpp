@@ -7,7 +7,7 @@
 
 #include "app/document/document.h"
 #include "app/kiosk/hand_rings.h"
-#include "app/panels/lesson_picture.h"
+#include "app/panels/tutorial_picture.h"
 #include "tests/app/kiosk/led_kiosk.h"
 
 namespace dubsar::app {
@@ -85,7 +85,7 @@ TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
   ASSERT_TRUE(starts.scene) << "a hand that rests on the button begins it, without ever having closed";
   EXPECT_EQ(starts.picture->title, Words().say(Line::kTourSealed, "en"));
   EXPECT_EQ(starts.picture->steps, 5U);
-  EXPECT_FALSE(starts.picture->lesson);
+  EXPECT_FALSE(starts.picture->tutorial);
   const auto peel = kiosk.go_on(38.0);  // the hand sinks: one looks on
   ASSERT_TRUE(peel.scene) << "the tour goes on for somebody who only looks";
   EXPECT_GE(peel.picture->step, 3U);
@@ -205,17 +205,17 @@ TEST(KioskGuide, WithATouchPanelAloneItInvitesFingersAndTeachesNoFists) {
   EXPECT_EQ(kiosk.go_on(1).picture->line, words.say(Line::kInvite, "en"));
   kiosk.set_sources({{"mouse", SourceHealth::kPresent, ""}, {"touch:turn=90", SourceHealth::kPresent, ""}});
   EXPECT_EQ(kiosk.go_on(1).picture->line, words.say(Line::kTouch, "en"));
-  EXPECT_FALSE(kiosk.go_on(1).picture->lesson);
+  EXPECT_FALSE(kiosk.go_on(1).picture->tutorial);
   Steered touched;
   touched.control = Control::kMouse;
   for (int i = 0; i < 40; ++i) {
     touched.view.rotation = turn_of({0, 0.02 * i, 0});
     touched.view.zoom = 1.0 + 0.01 * i;
-    EXPECT_FALSE(kiosk.go_on(0.05, touched).picture->lesson);
+    EXPECT_FALSE(kiosk.go_on(0.05, touched).picture->tutorial);
   }
   EXPECT_EQ(kiosk.guide().visit().counts().visits, 1);
-  EXPECT_EQ(kiosk.guide().visit().counts().done[static_cast<std::size_t>(Lesson::kTurn)], 1);
-  EXPECT_EQ(kiosk.guide().visit().counts().done[static_cast<std::size_t>(Lesson::kTwoHands)], 1);
+  EXPECT_EQ(kiosk.guide().visit().counts().done[static_cast<std::size_t>(Tutorial::kTurn)], 1);
+  EXPECT_EQ(kiosk.guide().visit().counts().done[static_cast<std::size_t>(Tutorial::kTwoHands)], 1);
   EXPECT_FALSE(kiosk.go_on(0.1, Steered()).picture->buttons.empty()) << "what a tap can choose is there";
   kiosk.set_sources({{"mouse", SourceHealth::kPresent, ""}, {"touch", SourceHealth::kLost, "unplugged"}});
   kiosk.go_on(120);
@@ -328,12 +328,12 @@ TEST(HandRings, TheArrowRisesFromWhereTheHandSankWithinThePanelAndNeverBlinks) {
 }
 
 TEST(LessonPicture, MovesWithoutJumpsAndNeverFlashes) {
-  for (std::size_t i = 0; i < kLessonCount; ++i) {
-    const auto lesson = static_cast<Lesson>(i);
-    LessonPose last = lesson_pose(lesson, 0.0);
+  for (std::size_t i = 0; i < kTutorialCount; ++i) {
+    const auto tutorial = static_cast<Tutorial>(i);
+    TutorialPose last = tutorial_pose(tutorial, 0.0);
     bool moved = false;
     for (double t = 0.01; t < 12.0; t += 0.01) {
-      const LessonPose pose = lesson_pose(lesson, t);
+      const TutorialPose pose = tutorial_pose(tutorial, t);
       if (pose.opacity > 0.01f && last.opacity > 0.01f) {  // where it can be seen
         EXPECT_LT(std::hypot(pose.x - last.x, pose.y - last.y), 0.06f) << i << " at " << t;
         EXPECT_LT(std::abs(pose.closing - last.closing), 0.05f) << i << " at " << t;

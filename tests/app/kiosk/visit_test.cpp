@@ -51,7 +51,7 @@ TEST(Visit, NobodyIsInvited) {
   const auto picture = story.go_on(5, nobody());
   EXPECT_EQ(picture.phase, VisitPhase::kAttract);
   EXPECT_EQ(picture.line, Line::kInvite);
-  EXPECT_EQ(picture.lesson, Lesson::kGrab);  // a hand that reaches out
+  EXPECT_EQ(picture.tutorial, Tutorial::kGrab);  // a hand that reaches out
   EXPECT_EQ(story.arrivals, 0);
 }
 
@@ -60,15 +60,15 @@ TEST(Visit, TeachesTheNextThingWhenOneSucceeded) {
   story.go_on(2, nobody());
   auto picture = story.go_on(1, hand(HandState::kReady));
   EXPECT_EQ(story.arrivals, 1);
-  EXPECT_EQ(picture.lesson, Lesson::kGrab);
+  EXPECT_EQ(picture.tutorial, Tutorial::kGrab);
   picture = story.go_on(2.5, hand(HandState::kHolding));
-  EXPECT_EQ(picture.lesson, Lesson::kTurn);
+  EXPECT_EQ(picture.tutorial, Tutorial::kTurn);
   story.go_on(1, hand(HandState::kHolding, 2.0));  // 40 degrees
   picture = story.go_on(3, hand(HandState::kReady));
   EXPECT_EQ(picture.phase, VisitPhase::kFree);
-  EXPECT_EQ(picture.lesson, Lesson::kRest);
+  EXPECT_EQ(picture.tutorial, Tutorial::kRest);
   EXPECT_EQ(picture.line, Line::kRest);
-  EXPECT_EQ(story.visit().counts().done[static_cast<std::size_t>(Lesson::kTurn)], 1);
+  EXPECT_EQ(story.visit().counts().done[static_cast<std::size_t>(Tutorial::kTurn)], 1);
 }
 
 TEST(Visit, LeavesThoseAloneWhoCan) {
@@ -77,18 +77,19 @@ TEST(Visit, LeavesThoseAloneWhoCan) {
   bool taught_turn = false, interrupted = false;
   story.go_on(0.2, hand(HandState::kReady));
   story.go_on(1.0, hand(HandState::kHolding, 2.0),
-              [&](const VisitPicture& p) { taught_turn |= p.lesson == Lesson::kTurn; });
-  story.go_on(30, hand(HandState::kHolding, 0.5), [&](const VisitPicture& p) { interrupted |= p.lesson.has_value(); });
+              [&](const VisitPicture& p) { taught_turn |= p.tutorial == Tutorial::kTurn; });
+  story.go_on(30, hand(HandState::kHolding, 0.5),
+              [&](const VisitPicture& p) { interrupted |= p.tutorial.has_value(); });
   EXPECT_FALSE(taught_turn);
   EXPECT_FALSE(interrupted);
 }
 
-TEST(Visit, ALessonThatDoesNotHelpRestsAndIsGivenUp) {
+TEST(Visit, ATutorialThatDoesNotHelpRestsAndIsGivenUp) {
   Story story;
   int shown = 0;
   bool was = false;
   story.go_on(120, hand(HandState::kReady), [&](const VisitPicture& p) {
-    const bool is = p.lesson == Lesson::kGrab;
+    const bool is = p.tutorial == Tutorial::kGrab;
     shown += is && !was;
     was = is;
   });
@@ -99,10 +100,10 @@ TEST(Visit, WhoseHandIsNotSeenLearnsHowItIsAfterHowToTakeHold) {
   Story story;
   VisitMoment head = nobody();
   head.head = true;
-  EXPECT_EQ(story.go_on(4, head).lesson, Lesson::kGrab);
-  EXPECT_EQ(story.go_on(2, head).lesson, Lesson::kShowHand);
+  EXPECT_EQ(story.go_on(4, head).tutorial, Tutorial::kGrab);
+  EXPECT_EQ(story.go_on(2, head).tutorial, Tutorial::kShowHand);
   EXPECT_EQ(story.go_on(1, head).line, Line::kShowHand);
-  EXPECT_EQ(story.go_on(1.5, hand(HandState::kReady)).lesson, Lesson::kGrab) << "now that it is";
+  EXPECT_EQ(story.go_on(1.5, hand(HandState::kReady)).tutorial, Tutorial::kGrab) << "now that it is";
 }
 
 TEST(Visit, WhereNobodySeesHeadsAHandThatSankIsAskedFor) {
@@ -111,11 +112,11 @@ TEST(Visit, WhereNobodySeesHeadsAHandThatSankIsAskedFor) {
   story.go_on(2, hand(HandState::kReady));
   const auto picture = story.go_on(3, nobody());
   EXPECT_EQ(picture.phase, VisitPhase::kLeaving);
-  EXPECT_EQ(picture.lesson, Lesson::kShowHand);
-  EXPECT_GT(picture.lesson_s, 0.0);
+  EXPECT_EQ(picture.tutorial, Tutorial::kShowHand);
+  EXPECT_GT(picture.tutorial_s, 0.0);
   Story able;
   able.go_on(2, hand(HandState::kHolding, 2.0));
-  EXPECT_FALSE(able.go_on(4, nobody()).lesson) << "who can turn it knows";
+  EXPECT_FALSE(able.go_on(4, nobody()).tutorial) << "who can turn it knows";
 }
 
 TEST(Visit, AHandThatSankOutOfSightIsAskedForUntilItStays) {
@@ -125,18 +126,18 @@ TEST(Visit, AHandThatSankOutOfSightIsAskedForUntilItStays) {
   high.hand_y_m = 0.1;
   Story story;
   story.go_on(2, low);
-  EXPECT_EQ(story.go_on(0.2, head).lesson, Lesson::kGrab) << "trackers lose a hand for a moment";
-  EXPECT_EQ(story.go_on(0.4, head).lesson, Lesson::kShowHand);
+  EXPECT_EQ(story.go_on(0.2, head).tutorial, Tutorial::kGrab) << "trackers lose a hand for a moment";
+  EXPECT_EQ(story.go_on(0.4, head).tutorial, Tutorial::kShowHand);
   EXPECT_EQ(story.go_on(0.1, head).line, Line::kShowHand);
-  EXPECT_EQ(story.go_on(0.5, low).lesson, Lesson::kShowHand) << "it is at the edge of what is seen";
-  EXPECT_EQ(story.go_on(1.0, high).lesson, Lesson::kGrab);
+  EXPECT_EQ(story.go_on(0.5, low).tutorial, Tutorial::kShowHand) << "it is at the edge of what is seen";
+  EXPECT_EQ(story.go_on(1.0, high).tutorial, Tutorial::kGrab);
   Story above;
   above.go_on(2, high);
-  EXPECT_EQ(above.go_on(1, head).lesson, Lesson::kGrab);
+  EXPECT_EQ(above.go_on(1, head).tutorial, Tutorial::kGrab);
   Story able;
   able.go_on(2, hand(HandState::kHolding, 2.0));
   able.go_on(2, low);
-  EXPECT_NE(able.go_on(1, head).lesson, Lesson::kShowHand) << "who can turn it knows";
+  EXPECT_NE(able.go_on(1, head).tutorial, Tutorial::kShowHand) << "who can turn it knows";
 }
 
 TEST(Visit, AHandThatSankIsWantedHigherAtOnceAndOnlyForAWhile) {
@@ -233,17 +234,18 @@ TEST(Visit, AHandThatNeverClosesIsTaughtToWipeAndToWalkTheTourAfterTwoLessons) {
   Visit visit;
   VisitMoment open = hand(HandState::kReady);
   open.can_tour = true;
-  std::vector<Lesson> shown;
+  std::vector<Tutorial> shown;
   std::set<Line> said;
   for (TimestampNs now = 0; now < 60 * kSecondNs; now += 100'000'000) {
     const VisitPicture picture = visit.update(now, open);
-    if (picture.lesson && (shown.empty() || shown.back() != *picture.lesson || picture.lesson_s == 0.0))
-      shown.push_back(*picture.lesson);
+    if (picture.tutorial && (shown.empty() || shown.back() != *picture.tutorial || picture.tutorial_s == 0.0))
+      shown.push_back(*picture.tutorial);
     if (picture.line) said.insert(*picture.line);
   }
   ASSERT_GE(shown.size(), 5U);
-  EXPECT_EQ(std::vector<Lesson>(shown.begin(), shown.begin() + 5),
-            (std::vector<Lesson>{Lesson::kGrab, Lesson::kGrab, Lesson::kSwipe, Lesson::kRest, Lesson::kSwipe}));
+  EXPECT_EQ(
+      std::vector<Tutorial>(shown.begin(), shown.begin() + 5),
+      (std::vector<Tutorial>{Tutorial::kGrab, Tutorial::kGrab, Tutorial::kSwipe, Tutorial::kRest, Tutorial::kSwipe}));
   EXPECT_TRUE(said.contains(Line::kRestTour));
   EXPECT_FALSE(said.contains(Line::kRest)) << "there is no envelope's sign before anything was turned";
   Visit once;  // who has closed it once is taught to take hold as ever
@@ -251,7 +253,7 @@ TEST(Visit, AHandThatNeverClosesIsTaughtToWipeAndToWalkTheTourAfterTwoLessons) {
     VisitMoment moment = hand(now < kSecondNs ? HandState::kHolding : HandState::kReady);
     moment.can_tour = true;
     const VisitPicture picture = once.update(now, moment);
-    EXPECT_NE(picture.lesson, Lesson::kSwipe);
+    EXPECT_NE(picture.tutorial, Tutorial::kSwipe);
   }
 }
 
@@ -263,11 +265,11 @@ TEST(Visit, TwelveDegreesInOneHoldAreTurnedAndAsMuchInThreeAreNot) {
       moment.held_deg = 0.04 * (one ? i : i % 100);
       visit.update(i * kStep, moment);
     }
-    EXPECT_EQ(visit.counts().done[static_cast<std::size_t>(Lesson::kTurn)], 0);
+    EXPECT_EQ(visit.counts().done[static_cast<std::size_t>(Tutorial::kTurn)], 0);
     VisitMoment moment = hand(HandState::kHolding, 0.1);
     moment.held_deg = one ? 12.1 : 4.1;
     visit.update(300 * kStep, moment);
-    EXPECT_EQ(visit.counts().done[static_cast<std::size_t>(Lesson::kTurn)], one ? 1 : 0);
+    EXPECT_EQ(visit.counts().done[static_cast<std::size_t>(Tutorial::kTurn)], one ? 1 : 0);
   }
 }
 

@@ -5,8 +5,8 @@
 
 namespace dubsar::app {
 
-/// How the hand of a lesson stands at a time: all lengths in radii of its round field, to the right and down.
-struct LessonPose {
+/// How the hand of a tutorial stands at a time: all lengths in radii of its round field, to the right and down.
+struct TutorialPose {
   float x = 0.0f, y = 0.0f;  ///< of the palm
   float closing = 0.0f;      ///< 0 open, 1 a fist
   float opacity = 1.0f;
@@ -18,10 +18,10 @@ struct LessonPose {
   float ring = 0.0f;          ///< 0..1: how much of the ring around the hand is full
 };
 
-/// The lesson's motion repeats; nothing in it changes faster than twice a second.
-LessonPose lesson_pose(Lesson lesson, double seconds) noexcept;
+/// The tutorial's motion repeats; nothing in it changes faster than twice a second.
+TutorialPose tutorial_pose(Tutorial tutorial, double seconds) noexcept;
 
 /// Draws the pose into the current list of Dear ImGui, around a place, in a field of `radius` pixels.
-void draw_lesson(const LessonPose& pose, float centre_x, float centre_y, float radius);
+void draw_tutorial(const TutorialPose& pose, float centre_x, float centre_y, float radius);
 
 }  // namespace dubsar::app

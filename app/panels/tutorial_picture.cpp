@@ -1,4 +1,4 @@
-#include "app/panels/lesson_picture.h"
+#include "app/panels/tutorial_picture.h"
 
 #include <imgui.h>
 
@@ -56,7 +56,7 @@ void draw_hand(ImDrawList& list, ImVec2 at, float unit, float closing, bool mirr
     }
 }
 
-void draw_tablet(ImDrawList& list, ImVec2 at, float unit, const LessonPose& pose) {
+void draw_tablet(ImDrawList& list, ImVec2 at, float unit, const TutorialPose& pose) {
   const float scale = unit * 0.30f * pose.object_scale, wide = scale * 0.75f * std::cos(1.2f * pose.object_turn);
   const ImU32 clay = colour(0.66f, 0.52f, 0.38f, 1.0f), dark = colour(0.38f, 0.29f, 0.2f, 1.0f);
   list.AddRectFilled(ImVec2(at.x - wide, at.y - scale), ImVec2(at.x + wide, at.y + scale), clay, 0.25f * scale);
@@ -72,29 +72,29 @@ void draw_tablet(ImDrawList& list, ImVec2 at, float unit, const LessonPose& pose
 
 }  // namespace
 
-LessonPose lesson_pose(Lesson lesson, double seconds) noexcept {
-  LessonPose out;
+TutorialPose tutorial_pose(Tutorial tutorial, double seconds) noexcept {
+  TutorialPose out;
   const auto t = static_cast<float>(std::fmod(std::max(seconds, 0.0), 4.0));
   const float there_and_back = 0.5f - 0.5f * std::cos(0.5f * kPi * t);  // once in 4 s
-  switch (lesson) {
-    case Lesson::kShowHand:
+  switch (tutorial) {
+    case Tutorial::kShowHand:
       out.y = 0.75f - 0.6f * ease(t, 0.0f, 1.5f);
       out.opacity = ease(t, 0.0f, 0.8f) * (1.0f - ease(t, 3.4f, 4.0f));
       break;
-    case Lesson::kGrab:
+    case Tutorial::kGrab:
       out.y = 0.75f - 0.5f * ease(t, 0.0f, 0.9f);  // it comes, takes hold, turns, lets go
       out.opacity = ease(t, 0.0f, 0.6f) * (1.0f - ease(t, 3.6f, 4.0f));
       out.closing = ease(t, 1.0f, 1.6f) * (1.0f - ease(t, 3.1f, 3.6f));
       out.x = -0.2f + 0.5f * ease(t, 1.8f, 2.9f);
       out.object_turn = 0.85f * ease(t, 1.8f, 2.9f) * (1.0f - ease(t, 3.3f, 4.0f));
       break;
-    case Lesson::kTurn:
+    case Tutorial::kTurn:
       out.closing = 1.0f;
       out.x = -0.35f + 0.7f * there_and_back;
       out.y = 0.3f;
       out.object_turn = -0.7f + 1.4f * there_and_back;
       break;
-    case Lesson::kTwoHands:
+    case Tutorial::kTwoHands:
       out.two = true;
       out.opacity = ease(t, 0.0f, 0.4f) * (1.0f - ease(t, 3.6f, 4.0f));
       out.closing = ease(t, 0.4f, 0.9f) * (1.0f - ease(t, 3.5f, 3.9f));
@@ -103,12 +103,12 @@ LessonPose lesson_pose(Lesson lesson, double seconds) noexcept {
       out.y = 0.3f;
       out.object_scale = 0.6f + 0.6f * ease(t, 1.1f, 2.9f) * (1.0f - ease(t, 3.5f, 4.0f));
       break;
-    case Lesson::kRest:
+    case Tutorial::kRest:
       out.y = 0.3f;
       out.ring = ease(t, 0.3f, 1.7f) * (1.0f - ease(t, 3.4f, 4.0f));
       out.lifted = ease(t, 1.7f, 2.7f) * (1.0f - ease(t, 3.4f, 4.0f));
       break;
-    case Lesson::kSwipe:
+    case Tutorial::kSwipe:
       out.x = -0.6f + 1.2f * ease(t, 0.8f, 1.5f);
       out.y = 0.3f;
       out.opacity = ease(t, 0.0f, 0.6f) * (1.0f - ease(t, 1.6f, 2.2f));
@@ -118,7 +118,7 @@ LessonPose lesson_pose(Lesson lesson, double seconds) noexcept {
   return out;
 }
 
-void draw_lesson(const LessonPose& pose, float centre_x, float centre_y, float radius) {
+void draw_tutorial(const TutorialPose& pose, float centre_x, float centre_y, float radius) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 centre(centre_x, centre_y);
   list.AddCircleFilled(centre, radius, colour(0.09f, 0.09f, 0.1f, 0.82f), 64);
