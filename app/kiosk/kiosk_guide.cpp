@@ -179,10 +179,10 @@ std::optional<DwellButton> KioskGuide::choose(const GuideMoment& moment) {
   const double aspect = asked_.aspect = moment.window_mm.x / moment.window_mm.y;
   buttons_ = place_buttons(shown, aspect);
   std::vector<DwellHand> hands;
-  const RingStage stage{parts_.zone, moment.window_mm, moment.middle_mm};
+  const CursorScene stage{parts_.zone, moment.window_mm, moment.middle_mm};
   for (const HandMark& hand : moment.steered.hands)
     if (hand.state <= HandState::kFist)
-      hands.push_back({(glm::dvec2(ring_place_mm(stage, hand.place_m)) - moment.middle_mm) / moment.window_mm,
+      hands.push_back({(glm::dvec2(cursor_place_mm(stage, hand.place_m)) - moment.middle_mm) / moment.window_mm,
                        hand.state == HandState::kReady});
   auto chosen = rest_.update(moment.now, hands, buttons_, aspect);
   for (DwellButtonPicture& button : buttons_) button.filled = rest_.filled(button.button);
@@ -378,9 +378,9 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   walk(moment, out);
   move_on(moment, visit, out);
   told_.ended = out.end;
-  const RingStage stage{parts_.zone, moment.window_mm, moment.middle_mm};
+  const CursorScene stage{parts_.zone, moment.window_mm, moment.middle_mm};
   const std::vector<HandMark>& hands = moment.steered.hands;
-  if (visit.phase != VisitPhase::kAsleep) out.lines = hand_rings(stage, hands);
+  if (visit.phase != VisitPhase::kAsleep) out.lines = hand_cursors(stage, hands);
   if (!hands.empty() && hands.front().state <= HandState::kFist) motion_.hand_m = hands.front().place_m;
   motion_.wants_higher = visit.higher_s.has_value();
   if (visit.higher_s)

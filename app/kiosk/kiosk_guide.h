@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "app/kiosk/dwell_buttons.h"
-#include "app/kiosk/hand_rings.h"
+#include "app/kiosk/hand_cursors.h"
 #include "app/kiosk/kiosk_diary.h"
 #include "app/kiosk/kiosk_profile.h"
 #include "app/kiosk/operator_menu.h"

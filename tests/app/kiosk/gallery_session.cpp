@@ -82,7 +82,7 @@ void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
   for (std::size_t h = 0; h < 2; ++h)
     if (person_.hands[h] != nullptr && Gallery::is_the_visitors(person_.hands[h]->id) && !screen_.my_mark)
       screen_.my_mark =
-          glm::dvec2(ring_place_mm({zone(), kWindowMm, {0, 0}}, navigator_.hands()[h].position_m())) / kWindowMm.y;
+          glm::dvec2(cursor_place_mm({zone(), kWindowMm, {0, 0}}, navigator_.hands()[h].position_m())) / kWindowMm.y;
   for (const DwellButtonPicture& button : guidance_.picture->buttons)
     if (button.button == DwellButton::kOpen || button.button == DwellButton::kClose) {
       screen_.sign = button.at * glm::dvec2(kWindowMm.x / kWindowMm.y, 1.0);

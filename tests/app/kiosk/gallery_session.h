@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/document/document.h"
-#include "app/kiosk/hand_rings.h"
+#include "app/kiosk/hand_cursors.h"
 #include "app/kiosk/kiosk_guide.h"
 #include "input/navigation/navigation.h"
 #include "tests/people/gallery.h"

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "app/document/document.h"
-#include "app/kiosk/hand_rings.h"
+#include "app/kiosk/hand_cursors.h"
 #include "app/panels/tutorial_picture.h"
 #include "tests/app/kiosk/led_kiosk.h"
 
@@ -287,30 +287,30 @@ TEST(KioskGuide, OnlyTheOperatorEndsIt) {
 }
 
 TEST(HandRings, StandWhereTheHandIsWithinThePanelAndAComfortableDepth) {
-  const RingStage stage{{{-0.35, -0.25, -0.2}, {0.35, 0.35, 0.6}}, {600, 340}, {0, 0}};
-  const auto middle = ring_place_mm(stage, {0.0, 0.05, 0.2});
+  const CursorScene stage{{{-0.35, -0.25, -0.2}, {0.35, 0.35, 0.6}}, {600, 340}, {0, 0}};
+  const auto middle = cursor_place_mm(stage, {0.0, 0.05, 0.2});
   EXPECT_NEAR(middle.x, 0.0, 1e-9);
   EXPECT_NEAR(middle.y, 0.0, 1e-9);
-  const auto right = ring_place_mm(stage, {0.2, 0.05, 0.2}), near = ring_place_mm(stage, {0.0, 0.05, 0.5});
+  const auto right = cursor_place_mm(stage, {0.2, 0.05, 0.2}), near = cursor_place_mm(stage, {0.0, 0.05, 0.5});
   EXPECT_GT(right.x, 100.0);
   EXPECT_GT(near.z, middle.z);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> anywhere(-2.0, 2.0);
   for (int i = 0; i < 1000; ++i) {
-    const auto at = ring_place_mm(stage, {anywhere(random), anywhere(random), anywhere(random)});
+    const auto at = cursor_place_mm(stage, {anywhere(random), anywhere(random), anywhere(random)});
     EXPECT_LE(std::abs(at.x), 300.0);
     EXPECT_LE(std::abs(at.y), 170.0);
     EXPECT_LE(at.z, 0.13 * 340);
     EXPECT_GE(at.z, -0.06 * 340);
   }
-  EXPECT_EQ(hand_rings(stage, std::vector<HandMark>{{{0, 0, 0.2}}}).size(), 1U);
-  EXPECT_EQ(hand_rings(stage, std::vector<HandMark>{{{0, 0, 0.2}, 0.0, 0.5}}).size(), 2U);
-  EXPECT_TRUE(hand_rings(stage, {}).empty());
+  EXPECT_EQ(hand_cursors(stage, std::vector<HandMark>{{{0, 0, 0.2}}}).size(), 1U);
+  EXPECT_EQ(hand_cursors(stage, std::vector<HandMark>{{{0, 0, 0.2}, 0.0, 0.5}}).size(), 2U);
+  EXPECT_TRUE(hand_cursors(stage, {}).empty());
 }
 
 TEST(HandRings, TheArrowRisesFromWhereTheHandSankWithinThePanelAndNeverBlinks) {
-  const RingStage stage{{{-0.35, -0.25, -0.2}, {0.35, 0.35, 0.6}}, {600, 340}, {0, 0}};
-  const glm::dvec3 sank{0.1, -0.4, 0.3}, ring = ring_place_mm(stage, sank);
+  const CursorScene stage{{{-0.35, -0.25, -0.2}, {0.35, 0.35, 0.6}}, {600, 340}, {0, 0}};
+  const glm::dvec3 sank{0.1, -0.4, 0.3}, ring = cursor_place_mm(stage, sank);
   double last = 0.0;
   for (double t = 0.0; t < 6.0; t += 1.0 / 60.0) {
     const std::vector<LinesItem> button = higher_arrow(stage, sank, t);

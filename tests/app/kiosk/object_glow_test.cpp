@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "app/kiosk/hand_rings.h"
+#include "app/kiosk/hand_cursors.h"
 
 namespace dubsar::app {
 namespace {
 
-const RingStage kStage{{{-0.35, -0.25, -0.2}, {0.35, 0.35, 0.6}}, {600, 340}, {0, 0}};
+const CursorScene kStage{{{-0.35, -0.25, -0.2}, {0.35, 0.35, 0.6}}, {600, 340}, {0, 0}};
 const std::vector<ScreenRect> kObject{{{-60, -80}, {60, 80}}};
 
 HandMark hand(double x, double y, HandState state) { return {{x, y, 0.2}, 0.0, 0.0, state}; }
@@ -22,7 +22,7 @@ TEST(ObjectGlow, IsOnTheObjectOnTheSideOfTheNearestHandThatMayTakeIt) {
   EXPECT_GT(beside.strength, 0.2);
   const std::array before{hand(0.02, 0.07, HandState::kReady)};
   const Glow on = object_glow(kStage, before, kObject);
-  EXPECT_NEAR(glm::distance(glm::dvec2(on.at_mm), glm::dvec2(ring_place_mm(kStage, before[0].place_m))), 0.0, 1e-9);
+  EXPECT_NEAR(glm::distance(glm::dvec2(on.at_mm), glm::dvec2(cursor_place_mm(kStage, before[0].place_m))), 0.0, 1e-9);
   EXPECT_GT(on.strength, beside.strength) << "the nearer the hand, the brighter";
   const std::array both{hand(0.3, 0.05, HandState::kReady), hand(-0.1, 0.05, HandState::kReady)};
   EXPECT_LT(object_glow(kStage, both, kObject).at_mm.x, 0.0);

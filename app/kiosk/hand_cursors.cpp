@@ -1,4 +1,4 @@
-#include "app/kiosk/hand_rings.h"
+#include "app/kiosk/hand_cursors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,22 +38,22 @@ LinesItem arc(const glm::dvec3& centre, double radius, double share, double widt
 
 }  // namespace
 
-glm::dvec3 ring_place_mm(const RingStage& stage, const glm::dvec3& place_m) noexcept {
-  const glm::dvec3 middle = 0.5 * (stage.zone.min_m + stage.zone.max_m);
-  const glm::dvec3 half = glm::max(0.5 * (stage.zone.max_m - stage.zone.min_m), glm::dvec3(1e-3));
+glm::dvec3 cursor_place_mm(const CursorScene& scene, const glm::dvec3& place_m) noexcept {
+  const glm::dvec3 middle = 0.5 * (scene.zone.min_m + scene.zone.max_m);
+  const glm::dvec3 half = glm::max(0.5 * (scene.zone.max_m - scene.zone.min_m), glm::dvec3(1e-3));
   const glm::dvec3 at = glm::clamp((place_m - middle) / half, glm::dvec3(-1.0), glm::dvec3(1.0));
-  const double height = stage.window_mm.y;
+  const double height = scene.window_mm.y;
   const double depth = 0.5 * (at.z + 1.0);  // 0 nearest to the panel's back, 1 nearest to the person
-  return {stage.middle_mm.x + kAcross * stage.window_mm.x * at.x, stage.middle_mm.y + kAcross * height * at.y,
+  return {scene.middle_mm.x + kAcross * scene.window_mm.x * at.x, scene.middle_mm.y + kAcross * height * at.y,
           height * (depth * (kBefore + kBehind) - kBehind)};
 }
 
-std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMark> hands) {
+std::vector<LinesItem> hand_cursors(const CursorScene& scene, std::span<const HandMark> hands) {
   std::vector<LinesItem> out;
   for (const HandMark& hand : hands) {
     const bool good = hand.state == HandState::kHolding || hand.state == HandState::kReady;
-    const double height = stage.window_mm.y, closing = std::clamp(hand.closing, 0.0, 1.0);
-    const glm::dvec3 at = ring_place_mm(stage, hand.place_m);
+    const double height = scene.window_mm.y, closing = std::clamp(hand.closing, 0.0, 1.0);
+    const glm::dvec3 at = cursor_place_mm(scene, hand.place_m);
     LinesItem ring = arc(at, height * std::lerp(kOpenRadius, kClosedRadius, closing), 1.0,
                          hand.state == HandState::kHolding ? 5.0 : 3.0, good ? kAmber : kGrey);
     ring.opacity = good ? 0.95 : 0.6;
@@ -63,9 +63,9 @@ std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMa
   return out;
 }
 
-std::vector<LinesItem> higher_arrow(const RingStage& stage, const glm::dvec3& place_m, double seconds) {
-  const double height = stage.window_mm.y;
-  const glm::dvec3 at = ring_place_mm(stage, place_m);
+std::vector<LinesItem> higher_arrow(const CursorScene& scene, const glm::dvec3& place_m, double seconds) {
+  const double height = scene.window_mm.y;
+  const glm::dvec3 at = cursor_place_mm(scene, place_m);
   const double shown = std::clamp(seconds / kArrowEaseS, 0.0, 1.0);
   LinesItem ring = arc(at, height * kOpenRadius, 1.0, 3.0, kPale);
   ring.opacity = ring.hidden_opacity = kRingStays * shown;
@@ -85,14 +85,14 @@ std::vector<LinesItem> higher_arrow(const RingStage& stage, const glm::dvec3& pl
   return {std::move(ring), std::move(edge), std::move(arrow)};
 }
 
-Glow object_glow(const RingStage& stage, std::span<const HandMark> hands, std::span<const ScreenRect> objects) {
+Glow object_glow(const CursorScene& scene, std::span<const HandMark> hands, std::span<const ScreenRect> objects) {
   Glow out;
   double nearest = std::numeric_limits<double>::max();
-  const double height = stage.window_mm.y;
+  const double height = scene.window_mm.y;
   for (const HandMark& hand : hands) {
     const bool holds = hand.state == HandState::kHolding;
     if (!holds && hand.state != HandState::kReady) continue;
-    const glm::dvec2 ring(ring_place_mm(stage, hand.place_m));
+    const glm::dvec2 ring(cursor_place_mm(scene, hand.place_m));
     for (const ScreenRect& rect : objects) {
       const glm::dvec2 middle = 0.5 * (rect.min_mm + rect.max_mm);
       const glm::dvec2 half = glm::max(kWithin * 0.5 * (rect.max_mm - rect.min_mm), glm::dvec2(1e-3));
