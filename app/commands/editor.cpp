@@ -6,9 +6,9 @@
 
 namespace dubsar::app {
 
-void Editor::change(Document next, std::string_view words, Way way) {
+void Editor::change(Document next, std::string_view words, Transition transition) {
   next.now.zoom = std::clamp(next.now.zoom, steps_.zoom_min, steps_.zoom_max);
-  way_ = way;
+  transition_ = transition;
   history_.change(std::move(next), std::string(words), merge_);
 }
 
@@ -26,12 +26,12 @@ bool Editor::has_work() const {
 }
 
 bool Editor::undo() {
-  way_ = Way::kGlide;
+  transition_ = Transition::kGlide;
   return history_.undo();
 }
 
 bool Editor::redo() {
-  way_ = Way::kGlide;
+  transition_ = Transition::kGlide;
   return history_.redo();
 }
 

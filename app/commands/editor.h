@@ -63,7 +63,7 @@ class Workplace {
 };
 
 /// How a view that a command changed is gone to.
-enum class Way {
+enum class Transition {
   kJump,   ///< at once: steps of keys
   kGlide,  ///< as a hand would turn the object
 };
@@ -91,7 +91,7 @@ class Editor {
   Workplace& place() noexcept { return *place_; }
 
   /// A step of the document.
-  void change(Document next, std::string_view words, Way way = Way::kJump);
+  void change(Document next, std::string_view words, Transition transition = Transition::kJump);
   /// What another window made of the same surface is here, too; undo leaves it alone. `next`: the document with it.
   void join(Document next);
   /// Changes in a row under the same number other than 0 are one step: those of a drag, or of a key that is held.
@@ -106,7 +106,7 @@ class Editor {
   void set_others(std::vector<OtherWork> others) { others_ = std::move(others); }
   const std::vector<OtherWork>& others() const noexcept { return others_; }
   /// How the view of the last change is gone to.
-  Way way() const noexcept { return way_; }
+  Transition transition() const noexcept { return transition_; }
 
  private:
   Document opened_;
@@ -115,7 +115,7 @@ class Editor {
   StepFigures steps_;
   UiState ui_;
   std::vector<OtherWork> others_;
-  Way way_ = Way::kJump;
+  Transition transition_ = Transition::kJump;
   std::uint64_t merge_ = 0;
 };
 

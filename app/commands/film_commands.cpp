@@ -45,7 +45,7 @@ Command on_keyframe(std::string name, void (*change)(Document&, std::size_t)) {
     DUBSAR_ASSIGN(const std::size_t at, place_argument(what, text, editor.document().keyframes.size()));
     Document next = editor.document();
     change(next, at);
-    editor.change(std::move(next), what, Way::kGlide);
+    editor.change(std::move(next), what, Transition::kGlide);
     return {};
   };
   return out;

@@ -26,7 +26,7 @@ Command light_from() {
     Document next = editor.document();
     const auto* const at = std::find(kCompass.begin(), kCompass.end(), name);
     next.light = {45.0 * static_cast<double>(at - kCompass.begin()), kRakingDeg};
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), why, Transition::kGlide);
     return {};
   };
   return out;

@@ -140,7 +140,7 @@ Command on_list(std::string name, Text group, Text argument, const List& list,
     DUBSAR_ASSIGN(const std::size_t at, place_argument(what, number, (editor.document().*list).size()));
     Document next = editor.document();
     change(editor, next, at, rest);
-    editor.change(std::move(next), what, Way::kGlide);
+    editor.change(std::move(next), what, Transition::kGlide);
     return {};
   };
   return out;

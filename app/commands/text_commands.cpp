@@ -85,7 +85,7 @@ Command read_atf_file() {
                   text_of_atf(read_atf(bytes), editor.document().edition.record, fs::path(path).filename().string()));
     Document next = editor.document();
     const AtfTaken taken = take_atf(next, text);
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), why, Transition::kGlide);
     editor.place().say(what_was_read(taken, text));
     return {};
   };

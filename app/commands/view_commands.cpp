@@ -50,7 +50,7 @@ Command go(std::string name, Text group, std::vector<DefaultKey> keys,
   out.run = [where = std::move(where), why = out.name](Editor& editor, const std::string& argument) -> Result<void> {
     Document next = editor.document();
     next.now = where(next, argument);
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), why, Transition::kGlide);
     return {};
   };
   return out;
@@ -77,7 +77,7 @@ Command obverse_here() {
     Document next = editor.document();
     next.home.rotation = nearest_square_turn(next.now.rotation);
     next.now.rotation = next.home.rotation;
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), why, Transition::kGlide);
     return {};
   };
   return out;
@@ -98,7 +98,7 @@ Command upright() {
     Document next = editor.document();
     next.home.rotation = glm::normalize(turn * next.home.rotation);
     next.now.rotation = next.home.rotation;
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), why, Transition::kGlide);
     return {};
   };
   return out;
@@ -135,7 +135,7 @@ std::vector<Command> view_commands() {
   out.back().run = [why = out.back().name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     set_view(next, home_of(next));
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), why, Transition::kGlide);
     return {};
   };
   out.push_back(turn("turn_left", {0, -1, 0}, {{"left"}, {"shift+left", "1"}}));

@@ -25,7 +25,7 @@ Result<void> take(Editor& editor, const Document& other, std::string_view why, c
     editor.place().say(tr("say.nothing_new", from));
     return {};
   }
-  editor.change(std::move(next), why, Way::kGlide);
+  editor.change(std::move(next), why, Transition::kGlide);
   editor.place().say(places_hold ? tr("say.taken_over", more, from) : tr("say.taken_over_doubtful", more, from));
   return {};
 }

@@ -24,7 +24,7 @@ CutBox BoxTool::box() {
 
 std::optional<BoxPicture> BoxTool::picture() {
   if (!scene_.ui().pointing.cut_box || !scene_.has_surface() || hidden_) return std::nullopt;
-  BoxPicture out = box().picture(Sight::of(*scene_.stage));
+  BoxPicture out = box().picture(PickCamera::of(*scene_.stage));
   const auto touches = held_ ? std::optional(held_->side()) : touched(out);
   if (touches) out.handles[*touches].touched = true;
   return out;
@@ -46,12 +46,12 @@ bool BoxTool::take(InputEvent& event) {
     held_.reset();
     return false;
   }
-  const Sight sight = Sight::of(*scene_.stage);
+  const PickCamera camera = PickCamera::of(*scene_.stage);
   if (held_) {
     if (event.kind != EventKind::kMotion) return true;
     const std::size_t side = held_->side();
     scene_.ask.run(
-        fmt::format("cut {} {:.3f}", kBoxSides[side].name, box().percent(side, held_->at_mm(sight, *event.at))),
+        fmt::format("cut {} {:.3f}", kBoxSides[side].name, box().percent(side, held_->at_mm(camera, *event.at))),
         kBoxDrags + scene_.window.presses);
     return true;
   }
@@ -59,7 +59,7 @@ bool BoxTool::take(InputEvent& event) {
   const auto side = touched(*seen);
   if (!side) return false;
   ++scene_.window.presses;
-  held_.emplace(box(), *side, sight, *event.at);
+  held_.emplace(box(), *side, camera, *event.at);
   return true;
 }
 

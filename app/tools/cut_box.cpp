@@ -49,27 +49,27 @@ double CutBox::percent(std::size_t side, double at_mm) const {
   return std::clamp(100.0 * (reach.to_mm - at_mm) / length, 0.0, std::max(0.0, 100.0 - kLeastLeft - cut_there));
 }
 
-bool CutBox::faces(std::size_t side, const Sight& sight) const {
-  return glm::dot(sight.camera_of_model() - middle(side), reach_[side].direction) > 0.0;
+bool CutBox::faces(std::size_t side, const PickCamera& camera) const {
+  return glm::dot(camera.camera_of_model() - middle(side), reach_[side].direction) > 0.0;
 }
 
-BoxPicture CutBox::picture(const Sight& sight) const {
+BoxPicture CutBox::picture(const PickCamera& camera) const {
   BoxPicture out;
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t low = 0; low < 8; ++low) {
       if ((low >> axis & 1) != 0) continue;
       bool before = false;  // one of the two sides that meet here looks at the viewer
-      for (std::size_t k = 0; k < 3; ++k) before = before || (k != axis && faces(2 * k + (low >> k & 1), sight));
-      out.edges.push_back({sight.seen(corner(low)), sight.seen(corner(low | std::size_t{1} << axis)), before});
+      for (std::size_t k = 0; k < 3; ++k) before = before || (k != axis && faces(2 * k + (low >> k & 1), camera));
+      out.edges.push_back({camera.seen(corner(low)), camera.seen(corner(low | std::size_t{1} << axis)), before});
     }
   for (std::size_t side = 0; side < kBoxSides.size(); ++side) {
     const Workplace::Reach& reach = reach_[side];
     const glm::dvec3 at = middle(side);
     BoxHandle handle;
-    handle.at = sight.seen(at);
-    handle.towards = sight.seen(at + 0.05 * (reach.to_mm - reach.from_mm) * reach.direction) - handle.at;
-    handle.before = faces(side, sight);
-    handle.distance_mm = glm::distance(sight.camera_of_model(), at);
+    handle.at = camera.seen(at);
+    handle.towards = camera.seen(at + 0.05 * (reach.to_mm - reach.from_mm) * reach.direction) - handle.at;
+    handle.before = faces(side, camera);
+    handle.distance_mm = glm::distance(camera.camera_of_model(), at);
     handle.words = local_figures(tr("cut.handle", tr_name("box_side", kBoxSides[side].name),
                                     fmt::format("{:.1f}", reach.to_mm - at_mm_[side]),
                                     fmt::format("{:.0f}", percent(side, at_mm_[side]))));
@@ -88,24 +88,24 @@ std::optional<std::size_t> handle_at(const BoxPicture& picture, const glm::dvec2
   return best;
 }
 
-BoxDrag::BoxDrag(const CutBox& box, std::size_t side, const Sight& sight, const glm::dvec2& at)
+BoxDrag::BoxDrag(const CutBox& box, std::size_t side, const PickCamera& camera, const glm::dvec2& at)
     : side_(side), handle_mm_(box.middle(side)), direction_(box.direction(side)), begun_mm_(box.at_mm(side)) {
-  const glm::dvec3 look = glm::normalize(handle_mm_ - sight.camera_of_model());
+  const glm::dvec3 look = glm::normalize(handle_mm_ - camera.camera_of_model());
   straight_ = std::abs(glm::dot(look, direction_)) > kStraight;
-  begun_along_ = along(sight, at);
+  begun_along_ = along(camera, at);
 }
 
 /// Of the place on the handle's line that is nearest to the pointer's ray.
-double BoxDrag::along(const Sight& sight, const glm::dvec2& at) const {
-  const Ray ray = sight.ray(at);
+double BoxDrag::along(const PickCamera& camera, const glm::dvec2& at) const {
+  const Ray ray = camera.ray(at);
   const double straight = glm::dot(ray.direction, direction_);
-  if (straight_) return (straight < 0 ? -1.0 : 1.0) * at.y * sight.height_mm / sight.scale();
+  if (straight_) return (straight < 0 ? -1.0 : 1.0) * at.y * camera.height_mm / camera.scale();
   const glm::dvec3 between = ray.from - handle_mm_;
   return (glm::dot(between, direction_) - straight * glm::dot(between, ray.direction)) / (1.0 - straight * straight);
 }
 
-double BoxDrag::at_mm(const Sight& sight, const glm::dvec2& at) const {
-  return begun_mm_ + along(sight, at) - begun_along_;
+double BoxDrag::at_mm(const PickCamera& camera, const glm::dvec2& at) const {
+  return begun_mm_ + along(camera, at) - begun_along_;
 }
 
 }  // namespace dubsar::app

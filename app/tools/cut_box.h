@@ -7,7 +7,7 @@
 #include "app/commands/box_sides.h"
 #include "app/commands/editor.h"
 #include "app/document/box_picture.h"
-#include "app/stage/sight.h"
+#include "app/stage/pick_camera.h"
 
 namespace dubsar::app {
 
@@ -25,11 +25,11 @@ class CutBox {
   const glm::dvec3& direction(std::size_t side) const noexcept { return reach_[side].direction; }
 
   /// As it is seen.
-  BoxPicture picture(const Sight& sight) const;
+  BoxPicture picture(const PickCamera& camera) const;
 
  private:
   glm::dvec3 corner(std::size_t bits) const;
-  bool faces(std::size_t side, const Sight& sight) const;
+  bool faces(std::size_t side, const PickCamera& camera) const;
 
   std::array<Workplace::Reach, kBoxSides.size()> reach_;
   std::array<double, kBoxSides.size()> at_mm_{};
@@ -42,13 +42,13 @@ std::optional<std::size_t> handle_at(const BoxPicture& picture, const glm::dvec2
 /// goes away from them as the pointer goes up.
 class BoxDrag {
  public:
-  BoxDrag(const CutBox& box, std::size_t side, const Sight& sight, const glm::dvec2& at);
+  BoxDrag(const CutBox& box, std::size_t side, const PickCamera& camera, const glm::dvec2& at);
   std::size_t side() const noexcept { return side_; }
   /// Where the side stands along its direction, with the pointer at `at`.
-  double at_mm(const Sight& sight, const glm::dvec2& at) const;
+  double at_mm(const PickCamera& camera, const glm::dvec2& at) const;
 
  private:
-  double along(const Sight& sight, const glm::dvec2& at) const;
+  double along(const PickCamera& camera, const glm::dvec2& at) const;
 
   std::size_t side_;
   glm::dvec3 handle_mm_, direction_;

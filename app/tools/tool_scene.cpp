@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "app/stage/sight.h"
+#include "app/stage/pick_camera.h"
 
 namespace dubsar::app {
 
 std::optional<Picked> ToolScene::picked_at(const glm::dvec2& at) const {
   const Shown now = shown(document(), window.view);
-  return picker->pick(now.parts, Sight::of(*stage).ray(at), now.clips);
+  return picker->pick(now.parts, PickCamera::of(*stage).ray(at), now.clips);
 }
 
 glm::dvec3 ToolScene::scan_place(const Picked& picked) const {

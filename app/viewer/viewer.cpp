@@ -85,7 +85,7 @@ void Viewer::keep_up() {
 void Viewer::follow() {
   input_.steering->set_home(home_of(document()));
   if (!same_view(input_.steering->goal().first, view_of(document())))
-    input_.steering->go_to(view_of(document()), given_.clock.now(), editor_->way() == Way::kGlide);
+    input_.steering->go_to(view_of(document()), given_.clock.now(), editor_->transition() == Transition::kGlide);
 }
 
 /// Whoever leads the session sees how things stand and says what is to be done.

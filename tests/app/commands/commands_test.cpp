@@ -63,7 +63,7 @@ TEST(Commands, SidesAreThoseOfATabletThatIsTurnedAsScribesDo) {
       EXPECT_NEAR(glm::length(q * row.outside - glm::dvec3(0, 0, 1)), 0, 1e-12) << row.name;
       EXPECT_NEAR(glm::length(q * row.up - glm::dvec3(0, 1, 0)), 0, 1e-12) << row.name;
       EXPECT_EQ(kSideNames[static_cast<std::size_t>(facing_side(bench.now().now.rotation, home))], row.name);
-      EXPECT_EQ(bench.editor.way(), Way::kGlide);
+      EXPECT_EQ(bench.editor.transition(), Transition::kGlide);
     }
   }
 }
@@ -237,7 +237,7 @@ Command stand_on_end() {
   out.run = [why = out.name](Editor& editor, const std::string&) -> Result<void> {
     Document next = editor.document();
     next.now.rotation = turn_of({0, 0, 1.5707963267948966}) * next.home.rotation;
-    editor.change(std::move(next), why, Way::kGlide);
+    editor.change(std::move(next), why, Transition::kGlide);
     return {};
   };
   return out;

@@ -97,7 +97,7 @@ TEST(MarkCommands, NotesAreNumberedAsEditionsCountAndComeBackAsTheyWereSeen) {
   bench.run("side obverse");
   bench.run("go_to_note 2");
   EXPECT_EQ(bench.now().now, seen);
-  EXPECT_EQ(bench.editor.way(), Way::kGlide);
+  EXPECT_EQ(bench.editor.transition(), Transition::kGlide);
   bench.run("delete_note 1");
   EXPECT_EQ(bench.now().notes[0].label, "r. 12");
 }

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "app/stage/sight.h"
+#include "app/stage/pick_camera.h"
 #include "tests/app/viewer/live_fixture.h"
 
 namespace dubsar::app {
@@ -23,7 +23,7 @@ class Held : public Live {
     options_.stage.shading = shading_preset("phong").value();
   }
   glm::dvec2 seen_px(const ViewMoment& m, const glm::dvec3& place) const {
-    return px_of(Sight::of(m.viewer.stage()).seen(place));
+    return px_of(PickCamera::of(m.viewer.stage()).seen(place));
   }
   void go(const glm::dvec2& px) {
     at_ = glm::ivec2(glm::round(px));
@@ -43,7 +43,7 @@ class Held : public Live {
         {[&] { go(from); },
          [&](const ViewMoment& m) {
            taken = Picker(m.viewer.mesh())
-                       .pick(options_.stage.shading.parts, Sight::of(m.viewer.stage()).ray(at_of(pointer())));
+                       .pick(options_.stage.shading.parts, PickCamera::of(m.viewer.stage()).ray(at_of(pointer())));
            const glm::dvec2 middle = px_of(m.report.view.pan);
            wanted = to(middle);
            return true;
@@ -136,7 +136,7 @@ TEST_F(Held, TheWheelZoomsToTheSurfaceUnderThePointerFromTheSmallestToTheLargest
                            [&](const ViewMoment& m) {
                              taken = Picker(m.viewer.mesh())
                                          .pick(options_.stage.shading.parts,
-                                               Sight::of(m.viewer.stage()).ray(at_of(pointer())));
+                                               PickCamera::of(m.viewer.stage()).ray(at_of(pointer())));
                              return true;
                            }}};
   for (int notch = 0; notch < 30; ++notch) {

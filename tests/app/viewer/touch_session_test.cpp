@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "app/stage/sight.h"
+#include "app/stage/pick_camera.h"
 #include "app/viewer/run_view.h"
 #include "app/viewer/viewer.h"
 #include "devices/touch/simulated_touch.h"
@@ -53,7 +53,7 @@ class TouchSession : public ::testing::Test {
   static glm::dvec2 share(const glm::dvec2& at) { return {0.5 + at.x * 540 / 960, 0.5 - at.y}; }
   static std::optional<glm::dvec3> surface_at(const ViewMoment& moment, const glm::dvec2& at) {
     const Viewer& viewer = moment.viewer;
-    const auto picked = Picker(viewer.mesh()).pick(PartLooks(), Sight::of(viewer.stage()).ray(at));
+    const auto picked = Picker(viewer.mesh()).pick(PartLooks(), PickCamera::of(viewer.stage()).ray(at));
     return picked ? std::optional(picked->at_mm) : std::nullopt;
   }
 
@@ -70,7 +70,7 @@ TEST_F(TouchSession, WhatOneFingerTakesFollowsIt) {
     if (step == 0) held = surface_at(moment, from);
     if (step < 3) return Fingers{};
     const glm::dvec2 at = glm::mix(from, to, std::clamp((step - 10) / 40.0, 0.0, 1.0));
-    if (step > 70) worst = std::max(worst, glm::distance(Sight::of(moment.viewer.stage()).seen(*held), to));
+    if (step > 70) worst = std::max(worst, glm::distance(PickCamera::of(moment.viewer.stage()).seen(*held), to));
     if (step > 80) return std::nullopt;
     return Fingers{{1, share(at)}};
   });
@@ -95,7 +95,7 @@ TEST_P(TouchDisplays, WhatTwoFingersTakeStaysBetweenThemAndAFingerThatGoesMovesN
     const glm::dvec2 middle = glm::mix(from, to, t), by = arm * glm::dvec2(std::cos(angle), std::sin(angle));
     if (step == 70) {
       before = moment.report.view;
-      apart = glm::distance(Sight::of(moment.viewer.stage()).seen(*held), to);
+      apart = glm::distance(PickCamera::of(moment.viewer.stage()).seen(*held), to);
     }
     if (step > 100) return std::nullopt;
     if (step > 85) return Fingers{};

@@ -13,13 +13,13 @@
 namespace dubsar::app {
 
 /// Places of the window count in its heights from its middle, to the right and up.
-struct Sight {
+struct PickCamera {
   glm::dmat4 screen_from_model{1.0};
   glm::dvec3 camera_mm{0.0, 0.0, 600.0};  ///< in the screen frame
   glm::dvec2 middle_mm{0.0};
   double height_mm = 200.0;
 
-  static Sight of(const Stage& stage) {
+  static PickCamera of(const Stage& stage) {
     return {stage.screen_from_model(), stage.camera_mm(), stage.middle_mm(), stage.window_mm().y};
   }
   glm::dvec2 seen(const glm::dvec3& model_mm) const {
