@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "app/steering/steering.h"
+#include "app/steering/input_controller.h"
 #include "app/tools/tool.h"
 #include "app/tools/tool_scene.h"
 #include "input/window_events.h"
@@ -15,7 +15,7 @@ class NavigateTool final : public Tool {
  public:
   /// What windows hear goes through `mouse`, for the source of that name; what fingers made, to `steering` itself. Both
   /// outlive it.
-  NavigateTool(ToolScene& scene, Steering& steering, WindowEvents& mouse)
+  NavigateTool(ToolScene& scene, InputController& steering, WindowEvents& mouse)
       : scene_(scene), steering_(steering), mouse_(mouse) {}
   bool take(InputEvent& event) override;
   /// Every event, whoever takes it: while the wheel turns at one place, or the same fingers go on, the surface under
@@ -26,7 +26,7 @@ class NavigateTool final : public Tool {
   void tell_depth(InputEvent& event);
 
   ToolScene& scene_;
-  Steering& steering_;
+  InputController& steering_;
   WindowEvents& mouse_;
   std::optional<InputEvent> wheeled_;  ///< the last turn of the wheel or step of fingers, with what was found there
 };

@@ -12,8 +12,8 @@
 #include "app/document/document.h"
 #include "app/document/gallery_picture.h"
 #include "app/stage/object_places.h"
+#include "app/steering/input_controller.h"
 #include "app/steering/source_set.h"
-#include "app/steering/steering.h"
 #include "display/render/scene.h"
 
 namespace dubsar::app {

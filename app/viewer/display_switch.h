@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/steering/steering.h"
+#include "app/steering/input_controller.h"
 #include "app/viewer/presenter/presenter.h"
 #include "input/worn_feed.h"
 
@@ -21,7 +21,7 @@ class DisplaySwitch {
   /// The window is somewhere else: the stage and the presenter follow.
   Result<void> place_changed();
   /// Whose eyes are expected where the display wants them.
-  void seen_by(Steering& steering) noexcept { steering_ = &steering; }
+  void seen_by(InputController& steering) noexcept { steering_ = &steering; }
   /// What the headset said of its wearer goes to the source of hands, and how large things are for them to steering.
   void feed_worn();
   /// Who wears the display, for the source of their hands; null: none is worn.
@@ -33,7 +33,7 @@ class DisplaySwitch {
   const ViewOptions& options_;
   Presenter& presenter_;
   Stage& stage_;
-  Steering* steering_ = nullptr;
+  InputController* steering_ = nullptr;
   std::vector<SinkSpec> specs_;
   std::size_t shown_ = 0;
   std::shared_ptr<WornFeed> worn_;

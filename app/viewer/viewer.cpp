@@ -137,7 +137,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   present_.words.figures = figures;
   measure_window();
   use_events(now);
-  Steering& steering = *input_.steering;
+  InputController& steering = *input_.steering;
   input_.sources->tick(now);
   take_surface();
   name_window();

@@ -124,7 +124,7 @@ class Viewer final {
   struct Input {
     WindowEvents mouse;  ///< of the window, on its way to the source of that name
     std::unique_ptr<InputRecorder> recorder;
-    std::unique_ptr<Steering> steering;
+    std::unique_ptr<InputController> steering;
     std::unique_ptr<SourceSet> sources;
     std::deque<Queued> queue;
     TimestampNs over_since = -1;

@@ -97,7 +97,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   DUBSAR_ASSIGN(auto font, LabelFont::create(panel_font()));
   displays_ = std::make_unique<DisplaySwitch>(options_, given_.presenter, *stage_);
   input_.steering =
-      std::make_unique<Steering>(options_.mapping, view_of(first.document), follow_options(options_.stage));
+      std::make_unique<InputController>(options_.mapping, view_of(first.document), follow_options(options_.stage));
   displays_->seen_by(*input_.steering);
   DUBSAR_TRY(make_sources());
   tools_.reset(new Tools{LightTool(scene_), BoxTool(scene_), ClickTool(scene_),

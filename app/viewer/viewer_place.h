@@ -22,7 +22,7 @@ class ViewerPlace final : public Workplace {
     const Clock& clock;
     ToolScene& scene;
     DisplaySwitch& displays;
-    Steering& steering;
+    InputController& steering;
     SourceSet& sources;
     FileList& files;
     SlicesTool& slices;

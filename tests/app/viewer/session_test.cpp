@@ -220,7 +220,7 @@ TEST_F(SessionTest, AVisitorsHandsInInfraredPicturesTurnAndZoomTheObject) {
 
 TEST_F(SessionTest, HandsSteerThoughAPictureTakesAQuarterOfASecond) {
   ManualClock clock(1'000'000'000);
-  Steering steering(options_.mapping, {}, {});
+  InputController steering(options_.mapping, {}, {});
   InputConfig config;
   config.seen_view = [seen = steering.seen()] { return seen->look(); };
   config.clock = &clock;
@@ -248,7 +248,7 @@ TEST_F(SessionTest, AMistakeInTheThreadThatSteersIsSaidAndTheProgramGoesOn) {
     const std::scoped_lock lock(mutex);
     said = text;
   });
-  Steering steering(options_.mapping, {}, {});
+  InputController steering(options_.mapping, {}, {});
   steering.on_input([](TimestampNs, const InputFrame&) { throw std::runtime_error("no such hand"); });
   const SteadyClock clock;
   steering.run(clock);
@@ -267,7 +267,7 @@ TEST_F(SessionTest, TheAgeOfTheInputIsTheTimeFromItsMeasurementToTheCameras) {
                         kServerOrigin = 1'700'000'000'000'000'000;  // the server's clock counts from 1970
   ManualClock clock(1000 * kMs);
   SimDevice server("simulated VRPN server", false);
-  Steering steering(options_.mapping, {}, {});
+  InputController steering(options_.mapping, {}, {});
   InputConfig config;
   config.clock = &clock;
   config.simulated_time = true;

@@ -30,12 +30,12 @@ struct Steered {
 };
 
 /// Any thread, but run() and stop() from one.
-class Steering {
+class InputController {
  public:
-  Steering(const Mapping& mapping, const ViewState& home, const HeadFollowOptions& head);
-  ~Steering() { stop(); }
-  Steering(const Steering&) = delete;
-  Steering& operator=(const Steering&) = delete;
+  InputController(const Mapping& mapping, const ViewState& home, const HeadFollowOptions& head);
+  ~InputController() { stop(); }
+  InputController(const InputController&) = delete;
+  InputController& operator=(const InputController&) = delete;
 
   InputMixer& input() noexcept { return mixer_; }
   /// Told all input, in the thread and at the time of its poll. Set it before there are sources.

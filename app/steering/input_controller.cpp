@@ -1,4 +1,4 @@
-#include "app/steering/steering.h"
+#include "app/steering/input_controller.h"
 
 #include <algorithm>
 #include <chrono>
@@ -17,7 +17,7 @@ constexpr std::size_t kMostKeys = 4096;
 
 }  // namespace
 
-Steering::Steering(const Mapping& mapping, const ViewState& home, const HeadFollowOptions& head)
+InputController::InputController(const Mapping& mapping, const ViewState& home, const HeadFollowOptions& head)
     : zone_{1e-3 * mapping.hands.enter_min_mm(), 1e-3 * mapping.hands.enter_max_mm()},
       people_(zone_),
       navigator_(mapping, home),
@@ -25,12 +25,12 @@ Steering::Steering(const Mapping& mapping, const ViewState& home, const HeadFoll
   seen_->show(home);
 }
 
-void Steering::on_input(std::function<void(TimestampNs, const InputFrame&)> told) {
+void InputController::on_input(std::function<void(TimestampNs, const InputFrame&)> told) {
   const std::scoped_lock lock(mutex_);
   told_ = std::move(told);
 }
 
-void Steering::steer(TimestampNs now) {
+void InputController::steer(TimestampNs now) {
   const std::scoped_lock lock(mutex_);
   steered_ = std::max(steered_, now);  // two threads may have read the clock in the other order
   InputFrame frame = mixer_.poll(steered_);
@@ -53,7 +53,7 @@ void Steering::steer(TimestampNs now) {
   newest_input_ = std::max(newest_input_, frame.time);
 }
 
-void Steering::run(const Clock& clock) {
+void InputController::run(const Clock& clock) {
   thread_ = std::jthread([this, &clock](const std::stop_token& stop) {
     std::mutex mutex;
     std::condition_variable_any waiting;
@@ -68,19 +68,19 @@ void Steering::run(const Clock& clock) {
   });
 }
 
-void Steering::stop() { thread_ = {}; }
+void InputController::stop() { thread_ = {}; }
 
-std::vector<InputEvent> Steering::take_keys() {
+std::vector<InputEvent> InputController::take_keys() {
   const std::scoped_lock lock(mutex_);
   return std::exchange(keys_, {});
 }
 
-std::vector<TouchFrame> Steering::take_touches() {
+std::vector<TouchFrame> InputController::take_touches() {
   const std::scoped_lock lock(mutex_);
   return std::exchange(fingers_.told, {});
 }
 
-Steered Steering::look(TimestampNs now, TimestampNs display_time) {
+Steered InputController::look(TimestampNs now, TimestampNs display_time) {
   const std::scoped_lock lock(mutex_);
   Steered out = since_;
   since_.swiped = false;
@@ -95,42 +95,42 @@ Steered Steering::look(TimestampNs now, TimestampNs display_time) {
   return out;
 }
 
-std::pair<ViewState, std::uint64_t> Steering::goal() const {
+std::pair<ViewState, std::uint64_t> InputController::goal() const {
   const std::scoped_lock lock(mutex_);
   return {navigator_.goal(), navigator_.movement()};
 }
 
-bool Steering::claim_for_keys(TimestampNs now) {
+bool InputController::claim_for_keys(TimestampNs now) {
   const std::scoped_lock lock(mutex_);
   return navigator_.claim_for_keys(now);
 }
 
-void Steering::go_to(const ViewState& view, TimestampNs now, bool glide) {
+void InputController::go_to(const ViewState& view, TimestampNs now, bool glide) {
   const std::scoped_lock lock(mutex_);
   navigator_.go_to(view, now, glide);
 }
 
-void Steering::set_scene(const GestureScene& scene) {
+void InputController::set_scene(const GestureScene& scene) {
   const std::scoped_lock lock(mutex_);
   navigator_.set_scene(scene);
 }
 
-void Steering::set_home(const ViewState& home) {
+void InputController::set_home(const ViewState& home) {
   const std::scoped_lock lock(mutex_);
   navigator_.set_home(home);
 }
 
-void Steering::set_room(const WornRoom& room) {
+void InputController::set_room(const WornRoom& room) {
   const std::scoped_lock lock(mutex_);
   navigator_.set_room(room);
 }
 
-void Steering::let_go_of_mouse() {
+void InputController::let_go_of_mouse() {
   const std::scoped_lock lock(mutex_);
   navigator_.let_go_of_mouse();
 }
 
-void Steering::set_rest(const glm::dvec3& rest_m) {
+void InputController::set_rest(const glm::dvec3& rest_m) {
   const std::scoped_lock lock(mutex_);
   head_.set_rest(rest_m);
 }
