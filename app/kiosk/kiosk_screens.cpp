@@ -21,29 +21,30 @@ class QuietSensor final : public InputSource {
 };
 
 /// Goes from screen to screen; wants() is the one that the picture of the last moment shows.
-class ScreenDirector final : public SessionGuide {
+class ScreenDirector final : public SessionController {
  public:
-  ScreenDirector(KioskGuide& kiosk, std::string pin, bool words) : kiosk_(kiosk), pin_(std::move(pin)), words_(words) {}
+  ScreenDirector(KioskController& kiosk, std::string pin, bool words)
+      : kiosk_(kiosk), pin_(std::move(pin)), words_(words) {}
   bool takes(const InputEvent& event, TimestampNs now) override { return kiosk_.takes(event, now); }
   void presented(TimestampNs now) override { kiosk_.presented(now); }
   const char* wants() const noexcept { return wants_; }
 
-  Guidance lead(const GuideMoment& moment) override {
+  Guidance lead(const SessionMoment& moment) override {
     now_ = moment.now;
     aspect_ = moment.window_mm.x / moment.window_mm.y;
     if (since_ < 0) since_ = now_;
     Steered steered = moment.steered;
     show_hand(steered);
-    const GuideMoment seen{now_,
-                           steered,
-                           moment.document,
-                           moment.sources,
-                           moment.window_mm,
-                           moment.middle_mm,
-                           moment.objects,
-                           moment.trouble,
-                           moment.surface,
-                           true};
+    const SessionMoment seen{now_,
+                             steered,
+                             moment.document,
+                             moment.sources,
+                             moment.window_mm,
+                             moment.middle_mm,
+                             moment.objects,
+                             moment.trouble,
+                             moment.surface,
+                             true};
     Guidance out = kiosk_.lead(seen);
     wants_ = nullptr;
     if (out.picture) look_at(*out.picture, out);
@@ -151,7 +152,7 @@ class ScreenDirector final : public SessionGuide {
     }
   }
 
-  KioskGuide& kiosk_;
+  KioskController& kiosk_;
   std::string pin_;
   bool words_;
   At at_ = At::kAttract;
@@ -172,7 +173,7 @@ Result<std::vector<KioskScreen>> kiosk_screens(const TriMesh& mesh, ViewOptions 
   profile.attract_after_s = 1.0;
   if (profile.pin.empty()) profile.pin = kScreensPin;
   const std::string pin = profile.pin;
-  KioskGuide kiosk(std::move(parts));
+  KioskController kiosk(std::move(parts));
   ScreenDirector director(kiosk, pin, words);
   view.guide = &director;
   view.stage.room.words = kWordsShare;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 #include "app/viewer/view_options.h"
 #include "core/base/progress.h"
 #include "core/image_io/image.h"

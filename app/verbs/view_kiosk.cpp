@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/cli/mesh_input.h"
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 #include "app/kiosk/wanted_panel.h"
 #include "app/verbs/view_files.h"
 #include "app/viewer/first_document.h"
@@ -148,7 +148,7 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
   parts.flat = panel.flat;
   parts.notify_socket = environment("NOTIFY_SOCKET");
   parts.watchdog_us = static_cast<std::int64_t>(parse_number(environment("WATCHDOG_USEC")).value_or(0.0));
-  KioskGuide guide(std::move(parts));
+  KioskController guide(std::move(parts));
   std::optional<KeptPanels> kept(std::in_place);  // no desktop is seen between two objects
   for (std::size_t at = 0; at < guide.objects().size(); at = guide.object()) {
     const KioskObject object = guide.objects()[at];

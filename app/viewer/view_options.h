@@ -19,7 +19,7 @@
 
 namespace dubsar::app {
 
-class SessionGuide;  // app/tools/session_guide.h
+class SessionController;  // app/tools/session_controller.h
 
 struct SessionTime {
   /// Simulated time: this many steps a second, however long they take; the same script gives the same pictures on every
@@ -87,7 +87,7 @@ struct ViewOptions {
   std::vector<Command> commands{};  ///< in place of those that change what is looked at
   SessionWords around{};
   std::vector<SidePanelOptions> also{};  ///< further panels, which show the same
-  SessionGuide* guide = nullptr;         ///< leads the session and says when it ends; null: nobody does. Outlives it
+  SessionController* guide = nullptr;    ///< leads the session and says when it ends; null: nobody does. Outlives it
 };
 
 /// What went into one picture. Times are those of the session's clock.

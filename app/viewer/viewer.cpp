@@ -90,7 +90,7 @@ void Viewer::follow() {
 
 /// Whoever leads the session sees how things stand and says what is to be done.
 void Viewer::lead(TimestampNs now, const Steered& steered) {
-  SessionGuide* const guide = options_.guide;
+  SessionController* const guide = options_.guide;
   if (guide == nullptr) return;
   const std::vector<SourceRow> rows = sources();
   present_.led.guidance =

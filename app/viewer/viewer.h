@@ -15,7 +15,7 @@
 #include "app/tools/light_tool.h"
 #include "app/tools/marks_tool.h"
 #include "app/tools/navigate_tool.h"
-#include "app/tools/session_guide.h"
+#include "app/tools/session_controller.h"
 #include "app/tools/touch_tool.h"
 #include "app/viewer/kept_work.h"
 #include "app/viewer/step_runner.h"

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 #include "app/kiosk/kiosk_screens.h"
 #include "app/stage/ground_color.h"
 #include "app/viewer/run_view.h"
@@ -71,7 +71,7 @@ class GalleryPictures : public ::testing::Test {
     options_.stage.screen.height_mm = options_.stage.screen.width_mm * 108 / 192;
     options_.inputs = {"scripted:path=" + file_.string()};
     options_.around.notices = false;
-    guide_ = std::make_unique<KioskGuide>(parts());
+    guide_ = std::make_unique<KioskController>(parts());
     options_.guide = guide_.get();
   }
   void TearDown() override { std::filesystem::remove(file_); }
@@ -89,7 +89,7 @@ class GalleryPictures : public ::testing::Test {
   std::filesystem::path file_;
   TriMesh mesh_;
   ViewOptions options_;
-  std::unique_ptr<KioskGuide> guide_;
+  std::unique_ptr<KioskController> guide_;
   SilentProgress progress_;
 };
 
@@ -116,7 +116,7 @@ TEST_F(GalleryPictures, NothingFlashesFromTheArrivalToTheReset) {
 std::vector<std::vector<Image>> pictures_of(const TriMesh& mesh, ViewOptions options, KioskParts parts) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("said_" + std::to_string(::getpid()));
   std::filesystem::remove_all(folder);
-  KioskGuide guide(std::move(parts));
+  KioskController guide(std::move(parts));
   options.guide = &guide;
   options.time.fps = 20.0;
   options.time.longest_s = 13.0;

@@ -7,7 +7,7 @@
 
 #include "app/document/document.h"
 #include "app/kiosk/hand_cursors.h"
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 #include "input/navigation/navigation.h"
 #include "tests/people/gallery.h"
 
@@ -40,7 +40,7 @@ class GallerySession {
   static Mapping mapping_;
   Navigator navigator_;
   PersonKeeper people_;
-  KioskGuide guide_;
+  KioskController guide_;
   Document document_;
   std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
   bool on_screen_ = true;

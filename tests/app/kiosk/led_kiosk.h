@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/document/document.h"
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 
 namespace dubsar::app {
 
@@ -30,7 +30,7 @@ class Kiosk {
     parts.notify_socket = notify_socket;
     parts.watchdog_us = watchdog_us;
     parts.wall = [this] { return WallTime{1'790'000'000 + now_ / 1'000'000'000, minute_}; };
-    guide_ = std::make_unique<KioskGuide>(std::move(parts));
+    guide_ = std::make_unique<KioskController>(std::move(parts));
     document_.parts = {{"tablet", 1}, {"envelope", 2}};
   }
   Guidance go_on(double seconds, Steered steered = {}) {
@@ -66,7 +66,7 @@ class Kiosk {
     event.down = true;
     EXPECT_TRUE(guide_->takes(event, now_));
   }
-  KioskGuide& guide() { return *guide_; }
+  KioskController& guide() { return *guide_; }
   const Document& document() const { return document_; }
   void set_sources(std::vector<SourceRow> rows) { rows_ = std::move(rows); }
   void set_minute(int minute) { minute_ = minute; }
@@ -85,7 +85,7 @@ class Kiosk {
   double fastest_deg_per_s = 0.0;
 
  private:
-  std::unique_ptr<KioskGuide> guide_;
+  std::unique_ptr<KioskController> guide_;
   std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
   Document document_;
   std::vector<Part> parts_;  // while document_ has none

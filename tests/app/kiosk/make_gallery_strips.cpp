@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "app/cli/mesh_input.h"
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 #include "app/viewer/run_view.h"
 #include "core/base/progress.h"
 #include "core/image_io/png_file.h"
@@ -48,7 +48,7 @@ Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script,
   parts.profile.attract_after_s = 2.0;
   parts.zone = {1e-3 * options.mapping.hands.zone_min_mm, 1e-3 * options.mapping.hands.zone_max_mm};
   parts.wall = [] { return WallTime{1'790'000'000, 720}; };
-  KioskGuide guide(std::move(parts));
+  KioskController guide(std::move(parts));
   options.guide = &guide;
   SilentProgress progress;
   std::vector<Image> out;

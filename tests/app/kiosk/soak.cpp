@@ -62,11 +62,11 @@ class PeopleSource final : public InputSource {
 };
 
 /// The kiosk's guide, watched.
-class WatchedGuide final : public SessionGuide {
+class WatchedGuide final : public SessionController {
  public:
   WatchedGuide(KioskParts parts, SoakFigures& figures) : guide_(std::move(parts)), figures_(figures) {}
   bool takes(const InputEvent& event, TimestampNs now) override { return guide_.takes(event, now); }
-  Guidance lead(const GuideMoment& moment) override {
+  Guidance lead(const SessionMoment& moment) override {
     begun_ = moment.now;
     present_ = !moment.sources.empty() && moment.sources[0].health == SourceHealth::kPresent;
     const bool hands = !moment.steered.hands.empty();
@@ -102,7 +102,7 @@ class WatchedGuide final : public SessionGuide {
   const Visit& visit() const { return guide_.visit(); }
 
  private:
-  KioskGuide guide_;
+  KioskController guide_;
   SoakFigures& figures_;
   TimestampNs begun_ = 0, appeared_ = -1;
   bool hands_ = false;

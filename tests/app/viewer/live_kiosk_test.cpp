@@ -6,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 #include "core/base/system/log.h"
 #include "devices/touch/simulated_touch.h"
 #include "tests/app/viewer/live_fixture.h"
@@ -50,7 +50,7 @@ class LiveKiosk : public ::testing::Test {
     parts.profile.pin = "90210735";
     parts.profile.key_file = key_file_;
     parts.wall = [this] { return WallTime{++seconds_, 12 * 60}; };  // each picture is a second: the file is looked for
-    guide_ = std::make_unique<KioskGuide>(std::move(parts));
+    guide_ = std::make_unique<KioskController>(std::move(parts));
     options_.guide = guide_.get();
   }
   void TearDown() override {
@@ -96,7 +96,7 @@ class LiveKiosk : public ::testing::Test {
   inline static bool unmanaged_ = false;  // GLFW was begun in this process, and looked for a manager once
   std::unique_ptr<testing::XPerson> person_;
   std::unique_ptr<testing::XDesktop> desktop_;
-  std::unique_ptr<KioskGuide> guide_;
+  std::unique_ptr<KioskController> guide_;
   TouchPanelSim panel_;
   std::map<std::uint32_t, glm::dvec2> fingers_;
   TimestampNs touched_ = 1'000'000'000;

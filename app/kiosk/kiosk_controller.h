@@ -15,7 +15,7 @@
 #include "app/kiosk/service_notify.h"
 #include "app/kiosk/tour_walk.h"
 #include "app/kiosk/visit.h"
-#include "app/tools/session_guide.h"
+#include "app/tools/session_controller.h"
 
 namespace dubsar::app {
 
@@ -32,13 +32,13 @@ struct KioskParts {
   std::int64_t watchdog_us = 0;
 };
 
-class KioskGuide final : public SessionGuide {
+class KioskController final : public SessionController {
  public:
-  explicit KioskGuide(KioskParts parts);
-  ~KioskGuide() override;
+  explicit KioskController(KioskParts parts);
+  ~KioskController() override;
 
   bool takes(const InputEvent& event, TimestampNs now) override;
-  Guidance lead(const GuideMoment& moment) override;
+  Guidance lead(const SessionMoment& moment) override;
   void presented(TimestampNs now) override;
 
   /// Another object, or the same again, is shown from now on.
@@ -82,13 +82,13 @@ class KioskGuide final : public SessionGuide {
     std::int64_t hour = -1, looked = -1, tours = 0;
     bool ended = false, ready = false;  ///< ready: to the service manager
   };
-  VisitMoment notice(const GuideMoment& moment);
-  std::optional<DwellButton> choose(const GuideMoment& moment);
+  VisitMoment notice(const SessionMoment& moment);
+  std::optional<DwellButton> choose(const SessionMoment& moment);
   void obey(OperatorWish wish, Guidance& out);
-  void begin_tour(const GuideMoment& moment);
-  void take_button(DwellButton button, const GuideMoment& moment);
-  void walk(const GuideMoment& moment, Guidance& out);
-  void move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out);
+  void begin_tour(const SessionMoment& moment);
+  void take_button(DwellButton button, const SessionMoment& moment);
+  void walk(const SessionMoment& moment, Guidance& out);
+  void move_on(const SessionMoment& moment, const VisitPicture& visit, Guidance& out);
   GalleryPicture picture(const VisitPicture& visit) const;
   std::vector<std::string> operators_page() const;
 

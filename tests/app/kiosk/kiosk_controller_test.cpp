@@ -1,4 +1,4 @@
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace dubsar::app {
 namespace {
 
-TEST(KioskGuide, AnObjectNobodyHoldsMovesSlowlyAndStopsWithoutAJump) {
+TEST(KioskController, AnObjectNobodyHoldsMovesSlowlyAndStopsWithoutAJump) {
   Kiosk kiosk;
   kiosk.go_on(40);
   EXPECT_GT(kiosk.fastest_deg_per_s, 1.0);
@@ -25,7 +25,7 @@ TEST(KioskGuide, AnObjectNobodyHoldsMovesSlowlyAndStopsWithoutAJump) {
   EXPECT_LT(turn_between_deg(still.turn, {1, 0, 0, 0}), 1e-6);
 }
 
-TEST(KioskGuide, SaysTheTitleAndInvitesInTheLanguageOfTheOperator) {
+TEST(KioskController, SaysTheTitleAndInvitesInTheLanguageOfTheOperator) {
   KioskProfile profile;
   profile.languages = {"de", "en"};
   Kiosk kiosk(profile);
@@ -49,7 +49,7 @@ Steered on_the_button(double turned_deg = 0.0, DwellButton which = DwellButton::
   return out;
 }
 
-TEST(KioskGuide, RestingOnTheSignOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned) {
+TEST(KioskController, RestingOnTheSignOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned) {
   Kiosk kiosk;
   kiosk.go_on(1, with_hand(HandState::kReady));
   kiosk.go_on(4, on_the_button());
@@ -75,7 +75,7 @@ TEST(KioskGuide, RestingOnTheSignOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned
   EXPECT_LT(largest, 5.0);  // percent a picture
 }
 
-TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
+TEST(KioskController, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
   KioskProfile profile;
   profile.objects = {{.file = "a.exa"}};
   profile.idle_reset_s = 20;
@@ -106,7 +106,7 @@ TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
   EXPECT_TRUE(kiosk.document().parts[1].visible);
 }
 
-TEST(KioskGuide, TheTourOfAnObjectIsThatOfItsFileOnceItIsRead) {
+TEST(KioskController, TheTourOfAnObjectIsThatOfItsFileOnceItIsRead) {
   KioskProfile profile;
   profile.objects = {{.file = "a.exa"}};
   Kiosk kiosk(profile);
@@ -123,7 +123,7 @@ TEST(KioskGuide, TheTourOfAnObjectIsThatOfItsFileOnceItIsRead) {
   EXPECT_FALSE(kiosk.go_on(1.0).scene) << "the tour before does not walk through the next object";
 }
 
-TEST(KioskGuide, AnObjectThatCannotBeReadGivesItsPlaceToTheNext) {
+TEST(KioskController, AnObjectThatCannotBeReadGivesItsPlaceToTheNext) {
   KioskProfile profile;
   profile.objects = {{.file = "a.exa"}, {.file = "b.exa"}, {.file = "c.exa"}};
   Kiosk kiosk(profile);
@@ -144,7 +144,7 @@ TEST(KioskGuide, AnObjectThatCannotBeReadGivesItsPlaceToTheNext) {
   EXPECT_EQ(kiosk.guide().object(), 0U) << "behind the last comes the first";
 }
 
-TEST(KioskGuide, TheOperatorsPageSaysHowThingsStandAndMakesThePanelBrighter) {
+TEST(KioskController, TheOperatorsPageSaysHowThingsStandAndMakesThePanelBrighter) {
   KioskProfile profile;
   profile.languages = {"de", "en"};
   profile.brightness = 0.5;
@@ -167,7 +167,7 @@ TEST(KioskGuide, TheOperatorsPageSaysHowThingsStandAndMakesThePanelBrighter) {
   EXPECT_NEAR(kiosk.go_on(0.1).picture->dark, 0.4, 1e-6);
 }
 
-TEST(KioskGuide, SeveralObjectsChangeAtAReset) {
+TEST(KioskController, SeveralObjectsChangeAtAReset) {
   KioskProfile profile;
   profile.objects = {{.file = "a.exa"}, {.file = "b.exa"}};
   profile.idle_reset_s = 20;
@@ -185,7 +185,7 @@ TEST(KioskGuide, SeveralObjectsChangeAtAReset) {
   EXPECT_EQ(kiosk.guide().object(), 1U) << "nobody has moved it since";
 }
 
-TEST(KioskGuide, AFingerOnTheGlassChoosesASignAtOnce) {
+TEST(KioskController, AFingerOnTheGlassChoosesASignAtOnce) {
   Kiosk kiosk;
   kiosk.go_on(1, with_hand(HandState::kReady));
   InputEvent event;
@@ -199,7 +199,7 @@ TEST(KioskGuide, AFingerOnTheGlassChoosesASignAtOnce) {
   EXPECT_FALSE(kiosk.guide().takes(event, 0));
 }
 
-TEST(KioskGuide, WithATouchPanelAloneItInvitesFingersAndTeachesNoFists) {
+TEST(KioskController, WithATouchPanelAloneItInvitesFingersAndTeachesNoFists) {
   Kiosk kiosk;
   const Words words;
   EXPECT_EQ(kiosk.go_on(1).picture->line, words.say(Line::kInvite, "en"));
@@ -222,7 +222,7 @@ TEST(KioskGuide, WithATouchPanelAloneItInvitesFingersAndTeachesNoFists) {
   EXPECT_EQ(kiosk.go_on(1).picture->line, words.say(Line::kNoTracker, "en"));
 }
 
-TEST(KioskGuide, ATapOnASignIsSomebodyWhoIsThere) {
+TEST(KioskController, ATapOnASignIsSomebodyWhoIsThere) {
   Kiosk kiosk;
   InputEvent event;
   event.kind = EventKind::kButton;
@@ -233,7 +233,7 @@ TEST(KioskGuide, ATapOnASignIsSomebodyWhoIsThere) {
   EXPECT_EQ(kiosk.guide().visit().counts().visits, 1);
 }
 
-TEST(KioskGuide, GoesBackToTheBeginningWhenNobodyComesBack) {
+TEST(KioskController, GoesBackToTheBeginningWhenNobodyComesBack) {
   KioskProfile profile;
   profile.idle_reset_s = 20;
   profile.attract_after_s = 4;
@@ -245,7 +245,7 @@ TEST(KioskGuide, GoesBackToTheBeginningWhenNobodyComesBack) {
   EXPECT_EQ(std::count(kiosk.commands.begin(), kiosk.commands.end(), "reset"), 1);
 }
 
-TEST(KioskGuide, IsDarkInQuietHoursAndNeverFlashes) {
+TEST(KioskController, IsDarkInQuietHoursAndNeverFlashes) {
   KioskProfile profile;
   profile.quiet = {{18 * 60, 9 * 60}};
   Kiosk kiosk(profile);
@@ -262,7 +262,7 @@ TEST(KioskGuide, IsDarkInQuietHoursAndNeverFlashes) {
   EXPECT_TRUE(kiosk.go_on(0.05).picture->line.empty());
 }
 
-TEST(KioskGuide, OnlyTheOperatorEndsIt) {
+TEST(KioskController, OnlyTheOperatorEndsIt) {
   Kiosk kiosk;
   const std::vector<std::string> keys{"escape", "f4", "f11",  "q",  "tab",    "enter",
                                       "1",      "9",  "home", "f1", "delete", "5"};

@@ -18,7 +18,7 @@
 
 namespace dubsar::app {
 
-struct GuideMoment {
+struct SessionMoment {
   TimestampNs now = 0;
   const Steered& steered;
   const Document& document;
@@ -50,12 +50,12 @@ struct Guidance {
 };
 
 /// One thread: that of the session.
-class SessionGuide {
+class SessionController {
  public:
-  virtual ~SessionGuide() = default;
+  virtual ~SessionController() = default;
   /// True: the event is the guide's, nobody else sees it.
   virtual bool takes(const InputEvent& event, TimestampNs now) = 0;
-  virtual Guidance lead(const GuideMoment& moment) = 0;
+  virtual Guidance lead(const SessionMoment& moment) = 0;
   /// A picture is on the panel.
   virtual void presented(TimestampNs now) = 0;
 };

@@ -1,4 +1,4 @@
-#include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/kiosk_controller.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ bool sees_hands(const SourceRow& row) {
 
 }  // namespace
 
-KioskGuide::KioskGuide(KioskParts parts)
+KioskController::KioskController(KioskParts parts)
     : parts_(std::move(parts)),
       visit_({parts_.profile.idle_reset_s, parts_.profile.attract_after_s}),
       menu_(parts_.profile.pin),
@@ -40,7 +40,7 @@ KioskGuide::KioskGuide(KioskParts parts)
   set_trouble(std::exchange(parts_.trouble, {}), parts_.flat);
 }
 
-void KioskGuide::set_trouble(std::string trouble, bool flat) {
+void KioskController::set_trouble(std::string trouble, bool flat) {
   parts_.flat = flat;
   if (trouble == parts_.trouble) return;
   parts_.trouble = std::move(trouble);
@@ -49,19 +49,19 @@ void KioskGuide::set_trouble(std::string trouble, bool flat) {
   diary_.trouble(parts_.trouble);
 }
 
-KioskGuide::~KioskGuide() {
+KioskController::~KioskController() {
   diary_.write("end", fmt::format("\"visits\": {}, \"resets\": {}", visit_.counts().visits, visit_.counts().resets));
   notify_.stopping();
 }
 
-void KioskGuide::begin_object() {
+void KioskController::begin_object() {
   told_.ended = false;
   motion_ = {};
   tour_.begin({}, {});
   view_.reset();
 }
 
-void KioskGuide::leave_out(std::size_t object, std::string_view why) {
+void KioskController::leave_out(std::size_t object, std::string_view why) {
   diary_.trouble(why);
   std::vector<KioskObject>& objects = parts_.profile.objects;
   objects.erase(objects.begin() + static_cast<std::ptrdiff_t>(object));
@@ -69,7 +69,7 @@ void KioskGuide::leave_out(std::size_t object, std::string_view why) {
   object_ = objects.empty() ? 0 : object_ % objects.size();
 }
 
-bool KioskGuide::takes(const InputEvent& event, TimestampNs now) {
+bool KioskController::takes(const InputEvent& event, TimestampNs now) {
   if (event.kind == EventKind::kButton && event.down && event.at) {
     const glm::dvec2 at = *event.at * glm::dvec2(1.0 / asked_.aspect, 1.0);
     asked_.press = at;
@@ -82,7 +82,7 @@ bool KioskGuide::takes(const InputEvent& event, TimestampNs now) {
   return true;
 }
 
-VisitMoment KioskGuide::notice(const GuideMoment& moment) {
+VisitMoment KioskController::notice(const SessionMoment& moment) {
   const Steered& steered = moment.steered;
   VisitMoment out;
   out.tracker = std::any_of(moment.sources.begin(), moment.sources.end(), sees_hands);
@@ -124,7 +124,7 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
   return out;
 }
 
-void KioskGuide::obey(OperatorWish wish, Guidance& out) {
+void KioskController::obey(OperatorWish wish, Guidance& out) {
   switch (wish) {
     case OperatorWish::kClose:
       break;
@@ -164,7 +164,7 @@ void KioskGuide::obey(OperatorWish wish, Guidance& out) {
 }
 
 /// Buttons that hands may rest on, and what they chose.
-std::optional<DwellButton> KioskGuide::choose(const GuideMoment& moment) {
+std::optional<DwellButton> KioskController::choose(const SessionMoment& moment) {
   std::vector<DwellButton> shown;
   const bool there = phase_ == VisitPhase::kFree || phase_ == VisitPhase::kArrived;
   if (tour_.walks()) {
@@ -192,7 +192,7 @@ std::optional<DwellButton> KioskGuide::choose(const GuideMoment& moment) {
   return chosen;
 }
 
-void KioskGuide::take_button(DwellButton button, const GuideMoment& moment) {
+void KioskController::take_button(DwellButton button, const SessionMoment& moment) {
   switch (button) {
     case DwellButton::kOpen:
     case DwellButton::kClose:
@@ -217,7 +217,7 @@ void KioskGuide::take_button(DwellButton button, const GuideMoment& moment) {
 }
 
 /// What a tour shows now. A hand that takes hold leaves it where it is.
-void KioskGuide::walk(const GuideMoment& moment, Guidance& out) {
+void KioskController::walk(const SessionMoment& moment, Guidance& out) {
   const std::vector<HandMark>& hands = moment.steered.hands;
   const bool held =
       moment.steered.control == Control::kMouse ||
@@ -243,7 +243,7 @@ void KioskGuide::walk(const GuideMoment& moment, Guidance& out) {
 }
 
 /// The tour of the object that is shown from now on.
-void KioskGuide::begin_tour(const GuideMoment& moment) {
+void KioskController::begin_tour(const SessionMoment& moment) {
   const Document& document = moment.document;
   Keyframe home = keyframe_of(document, 0.0);
   home.camera = document.home;
@@ -255,7 +255,7 @@ void KioskGuide::begin_tour(const GuideMoment& moment) {
 }
 
 /// What goes on by itself: the sway of an object that nobody holds, the envelope, the light of the room.
-void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out) {
+void KioskController::move_on(const SessionMoment& moment, const VisitPicture& visit, Guidance& out) {
   const double dt =
       motion_.last < 0 ? 0.0 : std::clamp(1e-9 * static_cast<double>(moment.now - motion_.last), 0.0, 0.2);
   const bool takes = visit.phase != VisitPhase::kAsleep;
@@ -293,7 +293,7 @@ void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, G
   motion_.shown = true;
 }
 
-GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
+GalleryPicture KioskController::picture(const VisitPicture& visit) const {
   GalleryPicture out;
   const std::string& spoken = language();
   if (visit.line) out.line = parts_.words.say(*visit.line, spoken);
@@ -319,7 +319,7 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
 }
 
 /// What can be chosen, and how things stand.
-std::vector<std::string> KioskGuide::operators_page() const {
+std::vector<std::string> KioskController::operators_page() const {
   std::vector<std::string> out;
   for (const OperatorRow& row : OperatorMenu::rows())
     out.push_back(fmt::format("{}  {}", row.key, tr_name("operator", row.words)));
@@ -337,7 +337,7 @@ std::vector<std::string> KioskGuide::operators_page() const {
   return out;
 }
 
-Guidance KioskGuide::lead(const GuideMoment& moment) {
+Guidance KioskController::lead(const SessionMoment& moment) {
   Guidance out;
   if (told_.ready && moment.on_screen) notify_.alive(moment.now);  // dark or at rest it draws nothing, and lives
   menu_.tick(moment.now);
@@ -392,7 +392,7 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   return out;
 }
 
-void KioskGuide::presented(TimestampNs) {
+void KioskController::presented(TimestampNs) {
   if (!told_.ready) notify_.ready();
   told_.ready = true;
 }
