@@ -136,11 +136,11 @@ Command beside() {
   out.closed = out.optional = true;
   out.run = [](Editor& editor, const std::string& text) -> Result<void> {
     UiState& ui = editor.ui();
-    if (text == "none" || (text.empty() && ui.beside)) {
-      ui.beside.reset();
+    if (text == "none" || (text.empty() && ui.compared)) {
+      ui.compared.reset();
       return {};
     }
-    if (!ui.beside) ui.beside = editor.document();
+    if (!ui.compared) ui.compared = editor.document();
     ui.linked = text != "apart";
     return {};
   };

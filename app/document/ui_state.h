@@ -56,9 +56,9 @@ struct UiState {
   std::vector<SurfacePin> pending{};  ///< places that the tool was told and still waits with
   std::optional<LightSweep> sweep{};
   Pointing pointing{};
-  std::optional<Document> beside;  ///< a state that stands beside the present one
-  bool linked = true;              ///< both are seen from the same place, by the same light
-  std::size_t note = 0;            ///< which is open, counted from 1; 0: none
+  std::optional<Document> compared;  ///< a state that stands beside the present one
+  bool linked = true;                ///< both are seen from the same place, by the same light
+  std::size_t note = 0;              ///< which is open, counted from 1; 0: none
   friend bool operator==(const UiState&, const UiState&) = default;
 };
 

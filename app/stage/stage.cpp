@@ -120,7 +120,7 @@ Observer Stage::Parts::cameras(int half) const {
   const SinkTraits traits = sink->traits();
   if (!next.shown.lens_zoom || traits.views > 1 || traits.worn) return out;
   // Who compares two states wants to see both from the same side, so that each has an eye before its own middle.
-  const bool each = next.shown.beside && !next.followed;
+  const bool each = next.shown.compared && !next.followed;
   const glm::dvec3 aside(each ? (half == 0 ? -0.25 : 0.25) * plane.window.x : 0.0, 0.0, 0.0);
   for (glm::dvec3* const eye : {&out.left_mm, &out.right_mm, &out.nominal_mm})
     *eye = plane.aside_mm + aside + next.shown.view.zoom * (*eye - plane.aside_mm);
@@ -174,7 +174,7 @@ Result<void> Stage::set_mesh(const TriMesh& mesh) {
   std::swap(parts_->object, object);
   parts_->cost.exact_view_ms = 0.0;
   parts_->next.shown.marks = {};
-  parts_->next.shown.beside.reset();
+  parts_->next.shown.compared.reset();
   parts_->painted = {};
   return parts_->prepare(*parts_->sink);
 }
@@ -242,8 +242,8 @@ void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) 
   parts_->next.followed = eyes.presence != Presence::kOff;
   if (!mesh) return;
   FieldNeeds needs = fields_needed(shown.style, shown.other);
-  if (shown.beside) {
-    const FieldNeeds more = fields_needed(shown.beside->style, shown.beside->other);
+  if (shown.compared) {
+    const FieldNeeds more = fields_needed(shown.compared->style, shown.compared->other);
     needs = {needs.integral || more.integral, needs.curvature || more.curvature};
   }
   parts_->measure(needs);
@@ -281,7 +281,7 @@ Result<void> Stage::Parts::paint_moved() {
   cost.coarse = 0;
   cost.begun_ms = 0.0;
   if (!has_mesh()) return fill_layers();
-  if (next.shown.beside) return paint_halves();
+  if (next.shown.compared) return paint_halves();
   set_scene();
   ViewArray& array = *layers.array;
   if (!object.multi) return object.renderer->render(scene(), painted.views, options.samples, array);
@@ -303,7 +303,7 @@ Result<void> Stage::Parts::refine() {
   const TimestampNs start = SteadyClock().now();
   const int before = cost.coarse;
   const auto end = start + static_cast<TimestampNs>(1e6 * options.budget_ms);
-  if (next.shown.beside) return refine_half(end);
+  if (next.shown.compared) return refine_half(end);
   DUBSAR_ASSIGN(cost.coarse, object.multi->refine_until(end, scene(), painted.views, options.samples, *layers.array));
   cost.begun_ms += milliseconds_since(start);
   if (cost.coarse == before) return {};

@@ -87,7 +87,7 @@ struct Shown {
   Glow glow{};                      ///< where one would take hold, in the screen frame
   /// Another one in the left half of every view, this one in the right half; null: this one alone. What that shows
   /// beside it is not looked at.
-  std::shared_ptr<const Shown> beside{};
+  std::shared_ptr<const Shown> compared{};
   bool lens_zoom = true;  ///< of one view: as Stage::camera_mm() says; false: the eyes stay where they are
   friend bool operator==(const Shown& a, const Shown& b) {
     return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks && a.before == b.before &&
@@ -95,8 +95,8 @@ struct Shown {
            a.view.pan == b.view.pan && a.view.nearer == b.view.nearer &&
            a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
-           a.other == b.other && a.parts == b.parts && a.lens_zoom == b.lens_zoom && !a.beside == !b.beside &&
-           (!a.beside || *a.beside == *b.beside);
+           a.other == b.other && a.parts == b.parts && a.lens_zoom == b.lens_zoom && !a.compared == !b.compared &&
+           (!a.compared || *a.compared == *b.compared);
   }
 };
 

@@ -8,7 +8,7 @@ namespace dubsar::app {
 
 glm::dmat4 Stage::Parts::placed(const Shown& shown, int half) const {
   const double magnification = plane.magnification * shown.fit;
-  if (!next.shown.beside)
+  if (!next.shown.compared)
     return app::screen_from_model(object.box, options.direction, shown.view, magnification, plane.window.y,
                                   plane.middle);
   // As large as fits into half the width, where that is what limits it.
@@ -22,7 +22,7 @@ glm::dmat4 Stage::Parts::placed(const Shown& shown, int half) const {
 std::vector<View> Stage::Parts::set_half(int half) {
   const ViewArray& whole = *layers.array;
   const int width = whole.width() / 2, left = half == 0 ? 0 : whole.width() - width;
-  const Shown& shown = half == 0 ? *next.shown.beside : next.shown;
+  const Shown& shown = half == 0 ? *next.shown.compared : next.shown;
   set_scene(shown, half);
   std::vector<View> views;
   for (const View& view : sink->views(cameras(half)))

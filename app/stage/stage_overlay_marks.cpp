@@ -32,7 +32,7 @@ Result<void> Stage::Parts::paint_overlay_marks(ViewArray& array) {
     overlay_marks.no_vertices = make_vertex_array();
     overlay_marks.framebuffer = make_framebuffer();
   }
-  if (next.shown.beside) set_scene();  // the other state may have been drawn last
+  if (next.shown.compared) set_scene();  // the other state may have been drawn last
   const glm::dmat4 world = placed();
   const auto at = [&](const glm::dvec3& model) { return glm::dvec3(world * glm::dvec4(model, 1.0)); };
   const int side =
@@ -118,7 +118,7 @@ Result<std::optional<glm::dvec3>> Stage::place_at(const glm::dvec2& at) {
   const int x = static_cast<int>(std::floor((0.5 + at.x * aspect) * kProbe)),
             y = static_cast<int>(std::floor((0.5 + at.y) * kProbe));
   const View one = crop_view(whole, x, y, 1, 1, kProbe, kProbe);
-  if (p.next.shown.beside && at.x < 0) return std::nullopt;  // that half is not the present state
+  if (p.next.shown.compared && at.x < 0) return std::nullopt;  // that half is not the present state
   Parts::Painted before = std::exchange(p.painted, {});
   p.set_scene();
   std::erase_if(p.painted.items, [](const DrawItem& item) { return !std::holds_alternative<MeshItem>(item); });

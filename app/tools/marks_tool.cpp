@@ -10,11 +10,11 @@ void MarksTool::contribute(Shown& shown) {
     return marks_of(document, scene_.ui(), parts, *font_, scene_.window.letters);
   };
   shown.marks = marks(*scene_.seen, shown.parts);
-  if (!scene_.ui().beside) return;
-  const Document& kept = *scene_.ui().beside;  // the state that was put beside the present one
-  auto beside = std::make_shared<Shown>(scene_.shown(kept, scene_.ui().linked ? shown.view : view_of(kept)));
-  beside->marks = marks(kept, beside->parts);
-  shown.beside = std::move(beside);
+  if (!scene_.ui().compared) return;
+  const Document& kept = *scene_.ui().compared;  // the state that was put beside the present one
+  auto compared = std::make_shared<Shown>(scene_.shown(kept, scene_.ui().linked ? shown.view : view_of(kept)));
+  compared->marks = marks(kept, compared->parts);
+  shown.compared = std::move(compared);
 }
 
 void MarksTool::point() {

@@ -100,7 +100,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   }
   UiState ui = editor_->ui();
   ui.pending.clear();
-  ui.beside.reset();
+  ui.compared.reset();
   ui.note = 0;
   ui.leaving = false;
   ui.sweep.reset();

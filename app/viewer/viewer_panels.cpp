@@ -60,7 +60,7 @@ PanelState Viewer::panel_state(TimestampNs now) {
   out.line.redo = editor_->history().redo_words();
   out.document = document();
   out.ui = ui();
-  out.ui.beside.reset();
+  out.ui.compared.reset();
   out.ui.pointing.at.reset();  // it moves, and nothing here shows it
   out.evidence = known_.evidence.of(visible_partitions(document()));
   out.files = files_.list.state(ui().choosing, has_surface(), now);

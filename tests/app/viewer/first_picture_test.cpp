@@ -171,7 +171,7 @@ TEST(FirstPicture, TwoStatesBesideEachOtherComeInPiecesAndAreThoseOfOneGo) {
   auto other = std::make_shared<Shown>(shown);
   other->style = shading_preset("sky-sun").value().style;
   shown.parts[0].opacity = 0.5;
-  shown.beside = other;
+  shown.compared = other;
   Image whole;
   {
     auto stage = Stage::create(mesh, options).value();
