@@ -179,8 +179,7 @@ TEST(CommandLine, EachPartAsStlIsWatertight) {
   ASSERT_FALSE(info["partitions"].empty());
   for (const json& part : info["partitions"]) {
     const std::string file = in_folder("part.stl");
-    ASSERT_EQ(run_dubsar({"export", tablet(), file, "--partition", std::to_string(part["id"].get<int>())}).exit_code,
-              0);
+    ASSERT_EQ(run_dubsar({"export", tablet(), file, "--partition", part["part"].get<std::string>()}).exit_code, 0);
     EXPECT_TRUE(json::parse(run_dubsar({"info", file, "--json", "-"}).out)["watertight"].get<bool>()) << part.dump();
   }
 }
