@@ -3,22 +3,6 @@
 #include <algorithm>
 
 namespace dubsar {
-namespace {
-
-/// Steps from air within which clay is dark: the disks of dips.cpp and the point spread reach as far.
-constexpr int kFringe = 4;
-
-}  // namespace
-
-void blind_fringes(const ContactBand& band, const std::vector<ClayCavity>& cavities, Dips& dips) {
-  std::vector<bool> fringe(band.nodes.size(), false);
-  for (const ClayCavity& cavity : cavities)
-    for (const std::uint32_t n : cavity) fringe[n] = true;
-  grow(band, kFringe - 1, fringe);
-  for (std::size_t n = 0; n < fringe.size(); ++n)
-    if (fringe[n]) dips.strength[n] = std::min(dips.strength[n], 0.0f);
-}
-
 bool keep_whole(const ContactBand& band, const std::vector<ClayCavity>& cavities, std::vector<ClaySide>& side) {
   bool changed = false;
   for (const ClayCavity& cavity : cavities) {

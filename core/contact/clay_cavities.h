@@ -12,9 +12,6 @@ namespace dubsar {
 /// Points of clay at a closed cavity: nodes of a band, rising.
 using ClayCavity = std::vector<std::uint32_t>;
 
-/// Dips near the cavities may be those of their air, and count as no sign of a film.
-void blind_fringes(const ContactBand& band, const std::vector<ClayCavity>& cavities, Dips& dips);
-
 /// Where a cavity has clay of both sides, the clay at it and that beside takes the side of most of it: the air of a
 /// pore is no way from one side to the other. Has any changed?
 bool keep_whole(const ContactBand& band, const std::vector<ClayCavity>& cavities, std::vector<ClaySide>& side);

@@ -10,7 +10,6 @@ namespace dubsar {
 
 enum class ContactRule : std::uint8_t {
   kDents,        ///< a dent must prove itself (dents.h)
-  kFringes,      ///< dips beside pores say nothing (clay_cavities.h)
   kSmallFilms,   ///< films are as large as a wedge (interface_shape.h)
   kClearFilms,   ///< clear ones may be smaller (interface_shape.h)
   kFilmPatches,  ///< patches that are a film as a whole (interface_shape.h)
@@ -23,7 +22,6 @@ enum class ContactRule : std::uint8_t {
 
 inline constexpr EnumName<ContactRule> kContactRules[] = {
     {ContactRule::kDents, "dents"},
-    {ContactRule::kFringes, "fringes"},
     {ContactRule::kSmallFilms, "small films"},
     {ContactRule::kClearFilms, "clear films"},
     {ContactRule::kFilmPatches, "film patches"},

@@ -121,7 +121,6 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
     log_info("contact: the envelope's clay has {:.1f} % of the density of the tablet's",
              100.0f * clays->envelope / clays->tablet);
   }
-  if (options.rules.has(ContactRule::kFringes)) blind_fringes(band, beside.pores, dips);
   DUBSAR_ASSIGN(const std::vector<ClaySide> side, divide(model, band, dips, beside, votes, progress));
   const DividedClay clay = divided(band, dips, beside, side);
   DUBSAR_ASSIGN(const ContactSheet sheet, sheet_of_cut(model, clay, values,
