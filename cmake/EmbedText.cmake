@@ -40,3 +40,12 @@ function(dubsar_embed_text output_variable header function)
     VERBATIM)
   set(${output_variable} ${output} PARENT_SCOPE)
 endfunction()
+
+# dubsar_english_rows(en.json output): the rows {"id", "text"}, of app/words/text.h.
+function(dubsar_english_rows json output)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${json})
+  file(READ ${json} rows)
+  string(REGEX REPLACE "\n  (\"[a-z0-9_.-]+\"): (\"[^\n]*\"),?" "\n{\\1, \\2}," rows "${rows}")
+  string(REGEX REPLACE "[{}]\n" "\n" rows "${rows}")
+  file(CONFIGURE OUTPUT ${output} CONTENT "${rows}" @ONLY)
+endfunction()

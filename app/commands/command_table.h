@@ -86,7 +86,4 @@ void add_text_line(Editor& editor, const std::vector<SurfacePin>& ends, std::str
 /// Says so where a line runs over clay whose surface the scan does not show, and its text tells no damage.
 void warn_of_patch(Editor& editor, const Note& line);
 
-/// Lays the slices through a place of the surface, the free one upright on it, and opens them.
-void slice_through(Editor& editor, const SurfacePin& pin);
-
 }  // namespace dubsar::app

@@ -4,6 +4,7 @@
 
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
+#include "app/commands/pointing_tools.h"
 #include "app/document/document_file.h"
 #include "app/document/mark_file.h"
 #include "core/edition/line_label.h"
@@ -12,8 +13,6 @@ namespace dubsar::app {
 namespace {
 
 constexpr Text kMeasures = "group.measures", kNotes = "group.notes";
-constexpr std::array<std::string_view, 8> kTools{"turn",    "distance", "angle", "depth",
-                                                 "profile", "note",     "line",  "slice"};
 
 /// As editions count lines: o. 1, lo.e. 2, r. 3 ...
 std::string next_label(const Document& document, const std::string& side) {
@@ -72,9 +71,12 @@ Result<std::vector<SurfacePin>> pins_of(Editor& editor, const std::vector<glm::d
 
 Command tool() {
   Command out{"tool", kMeasures, {}, "arg.tool"};
-  out.values.assign(kTools.begin(), kTools.end());
-  out.keys = {{"v", "turn"},    {"d", "distance"}, {"a", "angle"}, {"w", "depth"},
-              {"f", "profile"}, {"n", "note"},     {"i", "line"},  {"j", "slice"}};
+  out.values = {"turn"};
+  out.keys = {{"v", "turn"}};
+  for (const PointingTool& each : pointing_tools()) {
+    out.values.emplace_back(each.name);
+    out.keys.push_back({std::string(each.key), std::string(each.name)});
+  }
   out.closed = true;
   out.run = [](Editor& editor, const std::string& name) -> Result<void> {
     UiState& ui = editor.ui();
@@ -96,19 +98,10 @@ Command point() {
     DUBSAR_ASSIGN(const auto points, points_argument("point", text, 1, rest));
     DUBSAR_ASSIGN(SurfacePin pin, editor.place().pin(points[0]));
     UiState& ui = editor.ui();
-    if (ui.tool == "slice") {
-      slice_through(editor, pin);
-      return {};
-    }
+    const PointingTool& now = *pointing_tool(ui.tool);
     ui.pending.push_back(std::move(pin));
-    const auto kind = measure_kind(ui.tool);
-    const std::size_t wanted = kind ? points_of(*kind) : ui.tool == "line" ? 2 : 1;
-    if (ui.pending.size() < wanted) return {};
-    const std::vector<SurfacePin> pins = std::exchange(ui.pending, {});
-    if (kind) return add_measure(editor, *kind, pins, {});
-    add_note(editor, pins, {});
-    ++ui.pointing.notes;
-    return {};
+    if (ui.pending.size() < now.places) return {};
+    return now.use(editor, std::exchange(ui.pending, {}));
   };
   return out;
 }
@@ -181,6 +174,25 @@ Command write(std::string name, Text group, std::string (*format)(const Document
 }
 
 }  // namespace
+
+Result<void> use_distance(Editor& editor, const std::vector<SurfacePin>& pins) {
+  return add_measure(editor, MeasureKind::kDistance, pins, {});
+}
+Result<void> use_angle(Editor& editor, const std::vector<SurfacePin>& pins) {
+  return add_measure(editor, MeasureKind::kAngle, pins, {});
+}
+Result<void> use_depth(Editor& editor, const std::vector<SurfacePin>& pins) {
+  return add_measure(editor, MeasureKind::kDepth, pins, {});
+}
+Result<void> use_profile(Editor& editor, const std::vector<SurfacePin>& pins) {
+  return add_measure(editor, MeasureKind::kProfile, pins, {});
+}
+Result<void> use_note(Editor& editor, const std::vector<SurfacePin>& pins) {
+  add_note(editor, pins, {});
+  ++editor.ui().pointing.notes;
+  return {};
+}
+Result<void> use_line(Editor& editor, const std::vector<SurfacePin>& pins) { return use_note(editor, pins); }
 
 std::vector<Command> mark_commands() {
   std::vector<Command> out;

@@ -61,6 +61,22 @@ void zoom_by(ScanView& scan, double factor) {
   scan.zoom = zoom;
 }
 
+/// Lays the slices through a place of the surface, the free one upright on it, and opens them.
+void slice_through(Editor& editor, const SurfacePin& pin) {
+  ScanView next = editor.document().scan;
+  next.cursor_mm = next.centre_mm = pin.at_mm;
+  next.free_up = glm::normalize(pin.normal);
+  const glm::dmat3 seen = editor.place().seen_axes();
+  for (const glm::dvec3& axis : {seen[0], seen[1]}) {  // along the picture's rows, where these do not stand on end
+    const glm::dvec3 along = axis - glm::dot(axis, next.free_up) * next.free_up;
+    if (glm::length(along) < 0.3) continue;
+    next.free_right = glm::normalize(along);
+    break;
+  }
+  change(editor, next, "slice through a place");
+  open_drawer(editor);
+}
+
 Command slice_here() {
   Command out{"slice_here", kSlicesGroup, {{"b"}}};
   out.argument = "arg.place";
@@ -154,19 +170,9 @@ Command write_slice() {
 
 }  // namespace
 
-void slice_through(Editor& editor, const SurfacePin& pin) {
-  ScanView next = editor.document().scan;
-  next.cursor_mm = next.centre_mm = pin.at_mm;
-  next.free_up = glm::normalize(pin.normal);
-  const glm::dmat3 seen = editor.place().seen_axes();
-  for (const glm::dvec3& axis : {seen[0], seen[1]}) {  // along the picture's rows, where these do not stand on end
-    const glm::dvec3 along = axis - glm::dot(axis, next.free_up) * next.free_up;
-    if (glm::length(along) < 0.3) continue;
-    next.free_right = glm::normalize(along);
-    break;
-  }
-  change(editor, next, "slice through a place");
-  open_drawer(editor);
+Result<void> use_slice(Editor& editor, const std::vector<SurfacePin>& pins) {
+  slice_through(editor, pins.front());
+  return {};
 }
 
 std::vector<Command> slice_commands() {

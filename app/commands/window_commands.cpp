@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/commands/command_table.h"
+#include "app/commands/drawers.h"
 #include "app/commands/number_argument.h"
 #include "app/words/language.h"
 
@@ -36,9 +37,10 @@ Command toggle_source() {
 Command drawer() {
   Command out{"drawer", kWindowGroup, {}};
   out.argument = "arg.panel";
-  out.values = {"parts", "light", "style", "measures", "notes", "cuts", "slices", "film"};
-  out.keys = {{"p", "parts"},       {"l", "light"}, {"t", "style"},        {"m", "measures"},
-              {"shift+n", "notes"}, {"c", "cuts"},  {"shift+s", "slices"}, {"shift+k", "film"}};
+  for (const DrawerRow& row : kDrawers) {
+    out.values.emplace_back(row.name);
+    out.keys.push_back({std::string(row.key), std::string(row.name)});
+  }
   out.closed = true;
   out.run = [](Editor& editor, const std::string& name) -> Result<void> {
     UiState& ui = editor.ui();

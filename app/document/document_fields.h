@@ -6,6 +6,9 @@
 
 namespace dubsar::app {
 
+/// Of what is written; one more with each field that comes or goes. What older files lack is as in a new document.
+inline constexpr int kDocumentVersion = 6;
+
 void fields(auto& f, SourceFile& v) {
   f("path", v.path);
   f("bytes", v.bytes);

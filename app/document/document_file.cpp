@@ -16,7 +16,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr int kVersion = 6, kOldest = 1;
+constexpr int kOldest = 1;
 constexpr const char* kSaves = "saves";
 
 /// What ranges alone do not say.
@@ -73,7 +73,7 @@ json json_of(const Document& document) {
   fields(writer, copy);
   json out = writer.take();
   out["format"] = kDocumentFormat;
-  out["version"] = kVersion;
+  out["version"] = kDocumentVersion;
   return out;
 }
 
@@ -112,10 +112,10 @@ std::string format_document(const Document& document) { return format_work({docu
 
 Result<Work> parse_work(std::string_view text, std::string_view source) {
   DUBSAR_ASSIGN(const json object, parse_json(text, source, kLargestDocument));
-  DUBSAR_ASSIGN(const int version, json_version(object, kDocumentFormat, kOldest, kVersion, source));
+  DUBSAR_ASSIGN(const int version, json_version(object, kDocumentFormat, kOldest, kDocumentVersion, source));
   Work out;
   std::string complaint;
-  stored::Reader reader(object, "", complaint, version != kVersion);
+  stored::Reader reader(object, "", complaint, version != kDocumentVersion);
   fields(reader, out.document);
   if (complaint.empty()) complaint = complaint_about(out.document);
   if (!complaint.empty()) return fail(ErrorKind::kBadData, "{}: {}", source, complaint);

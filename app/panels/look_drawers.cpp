@@ -159,7 +159,7 @@ void draw_light(const PanelContext& context) {
   }
 }
 
-void draw_styles(const PanelContext& context) {
+void draw_style(const PanelContext& context) {
   if (const Command* const style = context.keys.commands().find("style"))
     for (const std::string& name : style->values) {
       if (ImGui::RadioButton(style_words(name).c_str(), name == context.state.document.style.name))

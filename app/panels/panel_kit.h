@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/commands/drawers.h"
 #include "app/panels/window_panels.h"
 #include "app/words/text.h"
 
@@ -60,12 +61,8 @@ bool type_in(const char* id, const std::string& now, std::string& typed, float w
 std::size_t caret_in(const char* id, const std::string& text);
 
 // Drawers, one each.
-void draw_parts(const PanelContext& context);
-void draw_light(const PanelContext& context);
-void draw_styles(const PanelContext& context);
-void draw_measures(const PanelContext& context);
-void draw_notes(const PanelContext& context);
-void draw_cuts(const PanelContext& context);
-void draw_film(const PanelContext& context);
+#define DUBSAR_DRAW_DRAWER(name, key, frame) void draw_##name(const PanelContext& context);
+DUBSAR_DRAWERS(DUBSAR_DRAW_DRAWER)
+#undef DUBSAR_DRAW_DRAWER
 
 }  // namespace dubsar::app

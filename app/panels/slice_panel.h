@@ -11,7 +11,5 @@ namespace dubsar::app {
 /// Where the pictures of kSliceNames stand in the layout; `large` as of ScanView.
 std::array<PanelRect, kSlices> slice_rects(float width, float height, int large) noexcept;
 
-struct PanelContext;
-void draw_slices(const PanelContext& context);
 
 }  // namespace dubsar::app

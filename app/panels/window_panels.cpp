@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/commands/pointing_tools.h"
 #include "app/commands/sides.h"
 #include "app/panels/palette.h"
 #include "app/panels/panel_kit.h"
@@ -97,11 +98,12 @@ void draw_strip(const PanelContext& context) {
 }
 
 void draw_tools(const PanelContext& context) {
-  constexpr std::array<const char*, 8> kTools{"turn", "distance", "angle", "depth", "profile", "note", "line", "slice"};
+  std::vector<std::string> names{"turn"};
+  for (const PointingTool& tool : pointing_tools()) names.emplace_back(tool.name);
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("tools", 0.0f, kTopLine + kGap, kToolsWidth,
-        row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
-  for (const std::string name : kTools)
+        row * static_cast<float>(names.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
+  for (const std::string& name : names)
     row_button(context, tr_name("tool", name), "tool " + name, context.state.ui.tool == name);
   ImGui::End();
 }
@@ -109,17 +111,15 @@ void draw_tools(const PanelContext& context) {
 void draw_drawers(const PanelContext& context) {
   struct Row {
     const char* name;
+    DrawerFrame frame;
     void (*draw)(const PanelContext&);
   };
   std::vector<Row> rows;
-  if (context.state.document.parts.size() > 1) rows.push_back({"parts", draw_parts});
-  rows.push_back({"light", draw_light});
-  rows.push_back({"style", draw_styles});
-  rows.push_back({"measures", draw_measures});
-  rows.push_back({"notes", draw_notes});
-  rows.push_back({"cuts", draw_cuts});
-  rows.push_back({"slices", nullptr});
-  rows.push_back({"film", draw_film});
+#define DUBSAR_DRAWN(name, key, frame) rows.push_back({#name, DrawerFrame::frame, draw_##name});
+  DUBSAR_DRAWERS(DUBSAR_DRAWN)
+#undef DUBSAR_DRAWN
+  if (context.state.document.parts.size() < 2)
+    std::erase_if(rows, [](const Row& row) { return row.frame == DrawerFrame::kOfParts; });
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("drawers", context.width - kTab, kTopLine + kGap, kTab,
         row * static_cast<float>(rows.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
@@ -129,8 +129,8 @@ void draw_drawers(const PanelContext& context) {
   ImGui::End();
   for (const Row& each : rows) {
     if (context.state.ui.drawer != each.name) continue;
-    if (each.draw == nullptr) {
-      draw_slices(context);
+    if (each.frame == DrawerFrame::kWide) {
+      each.draw(context);
       continue;
     }
     // What the window has no room for is reached with the wheel, or the bar at its side.

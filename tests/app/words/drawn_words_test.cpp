@@ -7,6 +7,7 @@
 #include <fstream>
 #include <regex>
 
+#include "app/commands/drawers.h"
 #include "app/panels/help_page.h"
 #include "app/panels/legend_page.h"
 #include "app/panels/overlay.h"
@@ -140,15 +141,19 @@ class DrawnWords : public ::testing::Test {
   KeyTable keys_;
 };
 
-constexpr std::array<const char*, 9> kDrawers{"",      "parts", "light",  "style", "measures",
-                                              "notes", "cuts",  "slices", "film"};
+/// Closed, and each of them open.
+std::vector<std::string> drawers() {
+  std::vector<std::string> out{""};
+  for (const DrawerRow& row : kDrawers) out.emplace_back(row.name);
+  return out;
+}
 
 TEST_F(DrawnWords, EveryDrawerSpeaksTheLanguageAndHasRoomForIt) {
   speak_made_up();
   PanelState state = full_window();
-  for (const char* const drawer : kDrawers) {
+  for (const std::string& drawer : drawers()) {
     state.ui.drawer = drawer;
-    check(panels(state, 1600.0f, 900.0f), std::string("drawer ") + drawer, 1600.0f);
+    check(panels(state, 1600.0f, 900.0f), "drawer " + drawer, 1600.0f);
   }
 }
 
@@ -208,7 +213,7 @@ TEST_F(DrawnWords, GermanAndEnglishFitTheSmallestWindow) {
     ASSERT_TRUE(use_language(language));
     PanelState state = full_window();
     for (const auto& [width, height] : {std::pair{1280.0f, 720.0f}, std::pair{960.0f, 540.0f}})
-      for (const char* const drawer : kDrawers) {
+      for (const std::string& drawer : drawers()) {
         state.ui.drawer = drawer;
         const auto drawn = panels(state, width, height);
         const std::string page = language + fmt::format(" at {} drawer ", width) + drawer;
