@@ -12,7 +12,15 @@ namespace dubsar::app {
 
 class History {
  public:
+  struct Step {
+    Document other;  ///< on the far side of the step
+    std::string words;
+    std::uint64_t merge = 0;
+  };
   explicit History(Document first) : now_(std::move(first)) {}
+  /// Goes on with steps to undo and to redo, the last of each is the next one.
+  History(std::vector<Step> past, Document now, std::vector<Step> future)
+      : past_(std::move(past)), future_(std::move(future)), now_(std::move(now)) {}
 
   const Document& now() const noexcept { return now_; }
   /// One step, named by `words`; none when nothing differs. Changes in a row with the same `merge` other than 0 are one
@@ -24,6 +32,8 @@ class History {
   /// False when there is nothing to undo or redo.
   bool undo();
   bool redo();
+  const std::vector<Step>& past() const noexcept { return past_; }
+  const std::vector<Step>& future() const noexcept { return future_; }
   std::size_t undo_depth() const noexcept { return past_.size(); }
   std::size_t redo_depth() const noexcept { return future_.size(); }
   /// What the next undo or redo is about; empty: there is none.
@@ -31,11 +41,6 @@ class History {
   std::string redo_words() const { return future_.empty() ? std::string() : future_.back().words; }
 
  private:
-  struct Step {
-    Document other;  ///< on the far side of the step
-    std::string words;
-    std::uint64_t merge = 0;
-  };
   std::vector<Step> past_, future_;
   Document now_;
 };

@@ -86,6 +86,11 @@ FileSession::FileSession(SourceFile source, const fs::path& state_folder)
   }
 }
 
+fs::path FileSession::history_file() const {
+  const fs::path& by_content = places_.back().path();
+  return by_content.empty() ? fs::path() : by_content.parent_path() / "undo" / by_content.filename();
+}
+
 std::vector<std::string> FileSession::take_told() {
   std::vector<std::string> out(told_.all.begin() + static_cast<std::ptrdiff_t>(told_.said), told_.all.end());
   told_.said = told_.all.size();

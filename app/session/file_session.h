@@ -26,6 +26,10 @@ class FileSession {
   FileSession(SourceFile source, const std::filesystem::path& state_folder);
 
   const SourceFile& source() const noexcept { return source_; }
+  /// Where the steps of the work are kept (kept_history.h); empty: nowhere.
+  std::filesystem::path history_file() const;
+  /// There is work on the disk.
+  bool has_work() const noexcept { return any_; }
   /// Of this surface, whatever its name was; none: nobody worked on it.
   const std::optional<Document>& found() const noexcept { return found_; }
   /// Work of surfaces that this one took the place of, with notes, measures or keyframes that found() lacks.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/document/join.h"
+#include "app/session/kept_history.h"
 #include "app/words/text.h"
 #include "core/base/system/log.h"
 
@@ -21,6 +22,7 @@ Result<void> KeptWork::leave_session(Editor& editor) {
   if (!session_) return {};
   DUBSAR_ASSIGN(Document kept, session_->leave(editor.document()));
   if (kept != editor.document()) editor.join(std::move(kept));
+  keep_history(*session_, editor.history());
   return {};
 }
 
@@ -93,8 +95,9 @@ bool KeptWork::may_end(Editor* editor) {
 }
 
 std::unique_ptr<Editor> KeptWork::begin(Document found, std::unique_ptr<FileSession> session, const MakeEditor& make) {
-  auto editor = make(History(found), found);
   session_ = std::move(session);
+  auto before = session_ ? kept_history(*session_, found) : std::nullopt;
+  auto editor = make(before ? *std::move(before) : History(found), found);
   if (session_) session_->begin(editor->document());
   const std::string key = file_key(editor->document());
   if (const auto left = left_.find(key); left != left_.end() && !key.empty()) {

@@ -19,7 +19,7 @@ class KeptWork {
   explicit KeptWork(std::function<void(std::string)> say) : say_(std::move(say)) {}
   /// Another file is shown from now on: as it was left in this window, or as it was found. Its editor.
   std::unique_ptr<Editor> begin(Document found, std::unique_ptr<FileSession> session, const MakeEditor& make);
-  /// The present one goes; its undo stays, and what could not be written.
+  /// The present one goes; its undo stays, in the next sessions, too, and what could not be written.
   void leave(Editor& editor);
   /// Writes what is due. True: what another window kept of the same surface is in the document now, too.
   bool keep(Editor& editor, TimestampNs now);

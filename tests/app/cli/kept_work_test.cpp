@@ -69,6 +69,7 @@ class KeptWork : public ::testing::Test {
     std::vector<fs::path> out;
     for (const auto& each : fs::recursive_directory_iterator(folder_))
       if (each.path().extension() == ".json" && each.path().string().find("recent") == std::string::npos &&
+          each.path().parent_path().filename() != "undo" &&
           read_text_file(each.path()).value().find("dubsar document") != std::string::npos)
         out.push_back(each.path());
     return out;
@@ -171,6 +172,25 @@ TEST_F(KeptWork, AndUndoOutlivesAnotherFile) {
   EXPECT_EQ(texts_of(after), Texts());
   EXPECT_EQ(texts_of(redone), Texts{"ONE"});
   EXPECT_EQ(notes(other), Texts{"OTHER"});
+}
+
+TEST_F(KeptWork, AndUndoOutlivesTheSession) {
+  const fs::path one = folder_ / "one.json", both = folder_ / "both.json";
+  EXPECT_EQ(notes(plate_, "0.1 add_note 3,3,0 ONE\n+0.1 add_note 5,5,0 TWO\n+0.1 add_note 7,7,0 THREE\n+0.1 undo\n"),
+            (Texts{"ONE", "TWO"}));
+  fs::rename(plate_, folder_ / "renamed.ply");
+  const fs::path renamed = folder_ / "renamed.ply";
+  EXPECT_EQ(notes(renamed, fmt::format("0.1 redo\n+0.1 write_notes {}\n+0.1 undo\n+0.1 undo\n", both.string())),
+            Texts{"ONE"});
+  EXPECT_EQ(texts_of(both), (Texts{"ONE", "TWO", "THREE"})) << "what was undone in the first session";
+  EXPECT_EQ(notes(renamed, fmt::format("0.1 undo\n+0.1 write_notes {}\n+0.1 redo\n+0.1 redo\n", one.string())),
+            (Texts{"ONE", "TWO"}));
+  EXPECT_EQ(texts_of(one), Texts());
+  // Somebody else works on it without those steps: they are none of this work any more.
+  fs::remove_all(folder_ / "state" / "dubsar" / "sessions" / "undo");
+  const ProgramRun without = view({renamed}, "0.1 undo\n");
+  EXPECT_NE(without.err.find("there is nothing to do it to now"), std::string::npos) << without.err;
+  EXPECT_EQ(notes(renamed), (Texts{"ONE", "TWO"}));
 }
 
 }  // namespace
