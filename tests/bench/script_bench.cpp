@@ -15,6 +15,7 @@
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/pipeline.h"
 #include "core/script/find_wedges.h"
+#include "tests/core/script/wedge_causes.h"
 #include "tests/core/script/wedge_score.h"
 
 namespace dubsar {
@@ -24,19 +25,20 @@ constexpr std::string_view kHelp =
     "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--unruled] [--pushed "
     "SHARE] [--envelope] "
     "[--keep DIR]\n"
-    "             [--each] [--subdivide TIMES]\n"
+    "             [--each] [--causes] [--subdivide TIMES]\n"
     "  --depth     of a usual wedge (7)\n"
     "  --envelope  judges the envelope's outside instead of the tablet\n"
     "  --keep      surfaces are kept in this folder, and taken from there the next time\n"
     "  --subdivide each triangle becomes four, so many times: how cost grows with triangles alone\n"
-    "  --each      says of each wedge drawn what was pressed there, and what was missed\n";
+    "  --each      says of each wedge drawn what was pressed there, and what was missed\n"
+    "  --causes    counts what was missed and what was drawn falsely, by place and by cause\n";
 
 struct ScriptArguments {
   Dims dims{320, 192, 304};
   std::uint64_t seed = 1;
   int seeds = 1, subdivide = 0;
   double depth = 7.0, pushed = 0.0;
-  bool unwritten = false, unruled = false, envelope = false, each = false;
+  bool unwritten = false, unruled = false, envelope = false, each = false, causes = false;
   std::string keep;
 };
 
@@ -55,6 +57,8 @@ ScriptArguments parse_script(int argc, char** argv) {
       a.unruled = true;
     } else if (word == "--envelope") {
       a.envelope = true;
+    } else if (word == "--causes") {
+      a.causes = true;
     } else if (word == "--each") {
       a.each = true;
     } else if (i + 1 == argc) {
@@ -167,6 +171,7 @@ int run_script(int argc, char** argv) {
   const ScriptArguments a = parse_script(argc, argv);
   SilentProgress progress;
   WedgeScore all;
+  WedgeCauses causes;
   for (int k = 0; k < a.seeds; ++k) {
     phantom::PhantomOptions options;
     options.dims = a.dims;
@@ -197,10 +202,15 @@ int run_script(int argc, char** argv) {
     for (const auto& [clear, right] : score.pair_clear)
       if (a.each) fmt::print("pair {:.4f} {}\n", clear, right);
     if (a.each) print_each(*truth, found, score);
+    if (a.causes) {
+      const WedgesFound every = script_value(find_wedges(mesh, {.least_confidence = 0.0}, progress));
+      causes.add(*truth, mesh, found, every, score);
+    }
     std::fflush(stdout);
     all.add(score);
   }
   if (a.seeds > 1) fmt::print("all: {}\n", all.text());
+  if (a.causes) fmt::print("{}", causes.text());
   return 0;
 }
 
