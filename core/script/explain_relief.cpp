@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/base/numbers/median.h"
 #include "core/base/system/parallel.h"
 
 namespace dubsar {
@@ -18,7 +19,10 @@ constexpr double kWaysApart = 0.6;        // radians between two ways that a pla
 constexpr double kClearMargin = 6e-4;     // a tenth of what a usual wedge explains
 constexpr double kSameTurn = 0.35;        // radians: the same way
 constexpr double kNeighbourWidths = 4.5;  // farther imprints explain nothing of a window
-constexpr FitOptions kAlone{0.5, 12};     // a neighbour only digs deeper
+// Median widths: the broadest of 1,346 that were pressed is 1.5. What is broader explains a step beside a patch or the
+// tablet's edge, and takes the wedges beside it with it.
+constexpr double kMostBreadth = 1.75;
+constexpr FitOptions kAlone{0.5, 12};  // a neighbour only digs deeper
 constexpr FitOptions kTogether{1.0, 8};
 
 double angle_apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
@@ -284,6 +288,14 @@ void ReliefExplanation::split(double cost) {
   }
 }
 
+void ReliefExplanation::drop_broad() {
+  std::vector<double> widths;
+  for (const Fit& fit : fits_)
+    if (fit.active) widths.push_back(fit.imprint.width());
+  const double most = kMostBreadth * std::max(1.0, median(widths));
+  for (Fit& fit : fits_) fit.active = fit.active && fit.imprint.width() <= most;
+}
+
 void ReliefExplanation::explain(int rounds, double cost) {
   std::vector<std::size_t> order(sites_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -310,6 +322,7 @@ void ReliefExplanation::explain(int rounds, double cost) {
     fits_ = std::move(next);
     for (Fit& fit : fits_) fit.hopeless = !fit.active && fit.gain < 0.7 * cost;
     by_gain(false);
+    drop_broad();
     for (const std::size_t k : order) {
       if (!fits_[k].active) continue;
       DepthSamples samples = sites_[k].samples;

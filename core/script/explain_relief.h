@@ -24,7 +24,7 @@ struct PlacedImprint {
   double margin = 0.0;  ///< by how much the best other direction explains less
   /// What it explains less turned by a third, counterclockwise and clockwise; kNoTurn where that fits nowhere.
   std::array<double, 2> thirds{};
-  double misfit = 0.0;   ///< root of the mean square of what is left in its footprint, of its depth
+  double misfit = 0.0;   ///< median of what is left in its footprint, either way, of its depth
   double seen = 1.0;     ///< of its window
   double covered = 0.0;  ///< share of its footprint that others explain
 };
@@ -54,7 +54,8 @@ class ReliefExplanation {
   std::vector<PlacedImprint> measured() const;
   /// Which of overlapping wedges was pressed after which: numbers in `placed`, of this explanation; what is not clear
   /// is left out. A later one is whole, and pushes clay into those before it: where they meet, these are shallower than
-  /// their planes. Cost: a millisecond a pair.
+  /// their planes. Empty where wedges that meet are no shallower than that: no clay was pushed. Cost: a millisecond a
+  /// pair.
   std::vector<PressedPair> pressing_order(const std::vector<PlacedImprint>& placed) const;
 
  private:
@@ -66,6 +67,7 @@ class ReliefExplanation {
     double gain = 0.0, margin = 0.0;
     std::array<double, 2> thirds{kNoTurn, kNoTurn};
   };
+  void drop_broad();
   void fit_alone(std::size_t k);
   void find_neighbours();
   void look_beside(std::size_t k, DepthSamples& samples) const;

@@ -50,7 +50,8 @@ void ReliefExplanation::measure(PlacedImprint& one) const {
     double height, weight;
   };
   std::vector<Ground> ground;
-  double squares = 0.0, count = 0.0, covered = 0.0, deepest = -1e30;
+  std::vector<double> off;
+  double covered = 0.0, deepest = -1e30;
   SheetTerms tip{};
   const auto terms_at = [&](std::size_t i) {
     return sheet_terms(static_cast<double>(samples.x[i]) - one.imprint.p[Imprint::kX],
@@ -66,16 +67,15 @@ void ReliefExplanation::measure(PlacedImprint& one) const {
       one.depth = -height;  // until the ground is known
     }
     if (model[i] > 0.0f) {
-      const double off = depth - static_cast<double>(std::max(model[i], samples.others[i]));
-      squares += off * off;
-      count += 1.0;
+      off.push_back(std::abs(depth - static_cast<double>(std::max(model[i], samples.others[i]))));
       covered += samples.others[i] >= model[i] ? 1.0 : 0.0;
     } else if (far2 < kGround * kGround && !(around[i] > 0.0f) && !(samples.others[i] > 0.0f)) {
       ground.push_back({terms, height, 1.0});
     }
   }
-  one.misfit = count > 0.0 ? std::sqrt(squares / count) / one.imprint.depth() : 1.0;
-  one.covered = count > 0.0 ? covered / count : 1.0;
+  // A hole in it, or the edge of another sheet, is not what the wedge looks like.
+  one.misfit = off.empty() ? 1.0 : median(off) / one.imprint.depth();
+  one.covered = off.empty() ? 1.0 : covered / static_cast<double>(off.size());
   if (deepest < -1e29) return;
   if (double x = 0.0, y = 0.0, height = 0.0; deepest_vertex(one, x, y, height) && -height > one.depth) {
     one.depth = -height;
@@ -92,11 +92,11 @@ void ReliefExplanation::measure(PlacedImprint& one) const {
     fitted = solved.has_value();
     if (!fitted) break;
     sheet = *solved;
-    std::vector<double> off;
-    for (const Ground& g : ground) off.push_back(std::abs(g.height - sheet_height(sheet, g.terms)));
-    const double scale = 4.0 * std::max(median(off), 1e-3);
+    std::vector<double> uneven;
+    for (const Ground& g : ground) uneven.push_back(std::abs(g.height - sheet_height(sheet, g.terms)));
+    const double scale = 4.0 * std::max(median(uneven), 1e-3);
     for (std::size_t i = 0; i < ground.size(); ++i) {
-      const double q = std::min(1.0, off[i] / scale);
+      const double q = std::min(1.0, uneven[i] / scale);
       ground[i].weight = (1.0 - q * q) * (1.0 - q * q);
     }
   }

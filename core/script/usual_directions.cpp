@@ -13,7 +13,10 @@ constexpr double kUsualStrays = 0.1;   // share of directions that nothing is kn
 constexpr double kUsualFewest = 12.0;  // wedges that count as much as all that is not known
 constexpr double kTurnBelief = 3.0;    // log odds of a side standing as is usual
 // A Winkelhaken explains 3e-5 more or less turned by a third, by chance: a vote of one is no word of one.
-constexpr double kVoteNat = 5e-5, kVoteMost = 2e-4, kVoteMostNats = 6.0;
+constexpr double kVoteNat = 5e-5, kVoteMostNats = 6.0;
+// Who votes: heads that end as soon as a Winkelhaken's does, and that fit nearly as well turned. What is clear by
+// itself is a wedge whose tail is broken or covered, and no word of how a Winkelhaken lies.
+constexpr double kVoteReach = 0.85, kVoteClear = 1.5e-4;
 // Where kinds of wedges point, by definition: along the line, down, obliquely; a Winkelhaken lies across the line alike
 // above and below, whichever way it opens.
 constexpr std::array<double, 5> kKindAngles{0.0, -0.5 * std::numbers::pi, -0.25 * std::numbers::pi,
@@ -58,10 +61,11 @@ void UsualDirections::vote(std::span<const PlacedImprint> placed, const TextSide
     thirds_[static_cast<std::size_t>(s)] = kKindNats * near;
   }
   for (const PlacedImprint& one : placed) {
-    if (is_long(one.imprint)) continue;
+    if (is_long(one.imprint) || one.imprint.reach() > kVoteReach * one.imprint.width() ||
+        std::max(one.thirds[0], one.thirds[1]) > kVoteClear)
+      continue;
     const double angle = sides.angle_of(one.along, one.normal).angle;
-    // Costs of the three ways against their mean: what is clear for one alone counts no more than kVoteMost.
-    const std::array<double, 3> costs{0.0, std::min(one.thirds[0], kVoteMost), std::min(one.thirds[1], kVoteMost)};
+    const std::array<double, 3> costs{0.0, one.thirds[0], one.thirds[1]};
     const double mean = (costs[0] + costs[1] + costs[2]) / 3.0;
     for (std::size_t way = 0; way < 3; ++way) {
       const double at = angle + (way == 0 ? 0.0 : way == 1 ? 1.0 : -1.0) * kFullTurn / 3.0;
