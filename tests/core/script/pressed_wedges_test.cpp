@@ -120,16 +120,23 @@ TEST(PressedWedges, AreAsWideOnACoarseMeshAsOnAFineOne) {
   }
 }
 
-/// Uprights over horizontals and the other way about: what was pressed later is whole.
-TEST(PressedWedges, TheLaterOfTwoIsWhole) {
+/// Uprights over horizontals and the other way about.
+std::vector<Pressed> page_of_crossings() {
   std::vector<Pressed> page;
-  int pairs = 0;
+  bool upright_first = false;
   for (double y = 14.0; y > -18.0; y -= 7.5)
-    for (double x = -15.0; x < 16.0; x += 7.5, ++pairs) {
+    for (double x = -15.0; x < 16.0; x += 7.5, upright_first = !upright_first) {
       const Pressed upright{x, y, -std::numbers::pi / 2}, level{x - 1.6, y - 1.2, 0.0};
-      page.push_back(pairs % 2 ? upright : level);
-      page.push_back(pairs % 2 ? level : upright);
+      page.push_back(upright_first ? upright : level);
+      page.push_back(upright_first ? level : upright);
     }
+  return page;
+}
+
+/// What was pressed later is whole.
+TEST(PressedWedges, TheLaterOfTwoIsWhole) {
+  const std::vector<Pressed> page = page_of_crossings();
+  const auto pairs = static_cast<double>(page.size() / 2);
   Progress progress;
   const auto found = find_wedges(plate(page, kPlateStep, 0.15), {}, progress);
   ASSERT_TRUE(found) << found.error().message;
@@ -155,6 +162,14 @@ TEST(PressedWedges, TheLaterOfTwoIsWhole) {
   EXPECT_GE(told, 0.8 * pairs) << found->wedges.size() << " wedges, usual width " << found->scale.width_mm << " misfit "
                                << found->scale.misfit << " broad " << found->scale.fitted;
   EXPECT_GE(right, 0.9 * told);
+}
+
+TEST(PressedWedges, WhereNoClayWasPushedNoOrderIsTold) {
+  Progress progress;
+  const auto found = find_wedges(plate(page_of_crossings()), {}, progress);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_GE(found->wedges.size(), 40U);
+  for (const ScriptWedge& w : found->wedges) EXPECT_TRUE(w.pressed_after.empty()) << w.order;
 }
 
 TEST(PressedWedges, UnwrittenClayHasNone) {
