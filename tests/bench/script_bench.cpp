@@ -23,10 +23,11 @@ namespace {
 
 constexpr std::string_view kHelp =
     "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--unruled] [--pushed "
-    "SHARE] [--envelope] "
+    "SHARE] [--envelope] [--scanner WORDS] "
     "[--keep DIR]\n"
     "             [--each] [--causes] [--subdivide TIMES]\n"
     "  --depth     of a usual wedge (7)\n"
+    "  --scanner   as an X-ray scanner shows it: words as phantom --scanner takes\n"
     "  --envelope  judges the envelope's outside instead of the tablet\n"
     "  --keep      surfaces are kept in this folder, and taken from there the next time\n"
     "  --subdivide each triangle becomes four, so many times: how cost grows with triangles alone\n"
@@ -39,7 +40,7 @@ struct ScriptArguments {
   int seeds = 1, subdivide = 0;
   double depth = 7.0, pushed = 0.0;
   bool unwritten = false, unruled = false, envelope = false, each = false, causes = false;
-  std::string keep;
+  std::string keep, scanner;
 };
 
 [[noreturn]] void script_usage() {
@@ -73,6 +74,8 @@ ScriptArguments parse_script(int argc, char** argv) {
       a.depth = std::atof(value);
     } else if (word == "--pushed") {
       a.pushed = std::atof(value);
+    } else if (word == "--scanner") {
+      a.scanner = value;
     } else if (word == "--keep") {
       a.keep = value;
     } else if (word == "--size") {
@@ -93,13 +96,14 @@ T script_value(Result<T> result) {
   std::exit(1);
 }
 
-SurfaceModel surface_of(const phantom::PhantomOptions& options, const std::string& keep, Progress& progress) {
+SurfaceModel surface_of(const phantom::PhantomOptions& options, const std::string& keep, const std::string& scanner,
+                        Progress& progress) {
   namespace fs = std::filesystem;
   const fs::path kept =
-      fs::path(keep) / fmt::format("s{}_{}x{}x{}_d{:g}{}{}{}.exa", options.seed, options.dims.x, options.dims.y,
+      fs::path(keep) / fmt::format("s{}_{}x{}x{}_d{:g}{}{}{}{}.exa", options.seed, options.dims.x, options.dims.y,
                                    options.dims.z, options.wedge_depth_vox, options.writing.written ? "" : "_unwritten",
                                    options.writing.ruled ? "" : "_unruled",
-                                   options.writing.pushed > 0.0 ? "_pushed" : "");
+                                   options.writing.pushed > 0.0 ? "_pushed" : "", scanner);
   if (!keep.empty() && fs::exists(kept)) return script_value(read_exa(kept, progress));
   const fs::path scan = fs::temp_directory_path() / fmt::format("dubsar_script_{}.h5", ::getpid());
   script_value(phantom::write_phantom(scan, std::nullopt, options, progress));
@@ -180,8 +184,9 @@ int run_script(int argc, char** argv) {
     options.writing.written = !a.unwritten;
     options.writing.ruled = !a.unruled;
     options.writing.pushed = a.pushed;
+    if (!a.scanner.empty()) options.scanner = script_value(phantom::parse_scanner(a.scanner));
     const auto truth = script_value(phantom::Phantom::create(options));
-    const SurfaceModel model = surface_of(options, a.keep, progress);
+    const SurfaceModel model = surface_of(options, a.keep, a.scanner, progress);
     TriMesh mesh = a.envelope ? script_value(make_tri_mesh(
                                     model, {.partition = model.partitions.find(PartitionKind::kEnvelopeOutside)->id}))
                               : script_value(make_tri_mesh(model, {.body = "tablet"}));
