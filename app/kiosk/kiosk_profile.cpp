@@ -16,10 +16,10 @@ using nlohmann::json;
 constexpr std::string_view kProfileFormat = "dubsar kiosk";
 constexpr std::size_t kMostObjects = 64, kMostPanels = 4;
 
-constexpr std::array<std::string_view, 19> kMembers{
-    "format",       "version", "objects",      "languages",       "words",  "display",    "monitor",
-    "panels",       "inputs",  "idle_reset_s", "attract_after_s", "quiet",  "brightness", "reading_distance_m",
-    "parallax_deg", "pin",     "key_file",     "journal",         "comment"};
+constexpr std::array<std::string_view, 20> kMembers{
+    "format",       "version", "objects",      "languages",       "words",   "display",    "monitor",
+    "panels",       "inputs",  "idle_reset_s", "attract_after_s", "quiet",   "brightness", "reading_distance_m",
+    "parallax_deg", "pin",     "key_file",     "journal",         "comment", "plugins"};
 constexpr std::array<std::string_view, 3> kPanelMembers{"display", "monitor", "size"};
 constexpr std::array<std::string_view, 5> kObjectMembers{"file", "tour", "title", "parts", "style"};
 
@@ -130,6 +130,7 @@ KioskProfile take_kiosk_profile(const json& object, const std::filesystem::path&
     else
       fields.complain(hours.error().message, fmt::format("quiet/{}", i));
   }
+  for (const std::string& file : fields.texts("plugins", 16)) out.plugins.push_back(in_folder(folder, file).string());
   out.words = in_folder(folder, fields.text("words", ""));
   out.display = fields.text("display", out.display.c_str());
   out.monitor = fields.text("monitor", "");

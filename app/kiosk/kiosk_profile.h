@@ -40,6 +40,7 @@ struct KioskProfile {
   std::vector<KioskObject> objects;          ///< at least one
   std::vector<std::string> languages{"en"};  ///< the first one is spoken at first
   std::filesystem::path words{};             ///< changes to the program's sentences; empty: none
+  std::vector<std::string> plugins{};        ///< shared libraries with displays; loading one runs its code
   std::string display = "mono", monitor{};   ///< as of `dubsar view`; monitor empty: where the panel is
   std::vector<KioskPanel> panels{};
   std::vector<std::string> inputs{};  ///< as of `dubsar view --input`; empty: what is plugged in, no keyboard

@@ -48,6 +48,15 @@ json to_json(const InputFrame& frame) {
                             {"grab", hand.grab_strength},
                             {"pinch_m", hand.pinch_distance_m},
                             {"confidence", hand.confidence}});
+  for (const HeadFrame& head : frame.heads) {
+    json one = {{"id", head.id}, {"confidence", head.confidence}};
+    if (head.left_eye_m) one["left_eye_m"] = numbers(*head.left_eye_m);
+    if (head.right_eye_m) one["right_eye_m"] = numbers(*head.right_eye_m);
+    out["heads"].push_back(std::move(one));
+  }
+  if (frame.puck) out["puck"] = {{"push", numbers(frame.puck->push)}, {"twist", numbers(frame.puck->twist)}};
+  for (const InputEvent& event : frame.events)
+    if (event.kind == EventKind::kKey) out["keys"].push_back({{"key", event.key}, {"down", event.down}});
   return out;
 }
 
@@ -106,6 +115,12 @@ class HandsMonitor final : public DeviceMonitor {
 
 Result<std::unique_ptr<DeviceMonitor>> monitor_device(const DeviceSpec& spec, OpenTransport open, const Clock& clock,
                                                       bool threaded) {
+  if (is_plugin(spec.driver)) {
+    InputConfig config;
+    config.clock = &clock;
+    DUBSAR_ASSIGN(auto made, make_input(spec.driver, config));
+    return std::make_unique<HandsMonitor>(std::move(made), threaded);
+  }
   DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices", driver_table()));
   if (driver->gives != Gives::kStereoPictures && driver->gives != Gives::kHands) {
     DUBSAR_ASSIGN(auto made, drive_device(spec, std::move(open), clock));

@@ -24,9 +24,12 @@ class DeviceMonitor {
   virtual TimestampNs newest() const = 0;  ///< when the last sample was measured
 };
 
+/// A source of a shared library in place of a driver: "plugin:FILE.so[,...]", as of `--input`.
+inline bool is_plugin(std::string_view driver) noexcept { return driver.starts_with("plugin:"); }
+
 /// The driver over any transport, real or replayed; `clock`, that of the times it is polled with, stamps what is read
-/// and outlives it. Cameras whose hands are shown need `threaded` where their pictures come in real time. kUsage: no
-/// such driver, options that it does not have.
+/// and outlives it. Cameras whose hands are shown need `threaded` where their pictures come in real time. A plug-in has
+/// no transport. kUsage: no such driver, options that it does not have.
 Result<std::unique_ptr<DeviceMonitor>> monitor_device(const DeviceSpec& spec, OpenTransport open, const Clock& clock,
                                                       bool threaded);
 

@@ -64,7 +64,7 @@ struct DevicesRequest {
   bool live = false;
   std::optional<double> duration;
   double seconds = 10.0;
-  double speed = 1.0;
+  std::optional<double> speed;
   std::optional<std::uint64_t> seed;
   Actions actions;
 };
@@ -177,18 +177,26 @@ Result<VerbResult> probe_looking_glass(const Clock& clock) {
 Result<VerbResult> run_live(const DevicesRequest& options, bool print, Progress& progress) {
   const SteadyClock clock;
   const DeviceSpec spec = options.device.spec();
-  DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices", driver_table()));
-  OpenTransport open;
-  if (driver->bus != Bus::kService) {
-    DUBSAR_ASSIGN(open, open_device(spec, clock));
-  } else if (options.actions.record->chosen()) {
+  const bool records = options.actions.record->chosen();
+  if (is_plugin(spec.driver) && records)
     return fail(ErrorKind::kUsage,
-                "devices: {} is a service and sends no bytes of a device: record its hands with dubsar "
-                "view --input {} --record FILE",
-                spec.driver, driver->input.source);
+                "devices: a plug-in sends no bytes of a device: record what it tells with dubsar view --input {} "
+                "--record FILE",
+                spec.driver);
+  OpenTransport open;
+  if (!is_plugin(spec.driver)) {
+    DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices", driver_table()));
+    if (driver->bus == Bus::kService && records)
+      return fail(ErrorKind::kUsage,
+                  "devices: {} is a service and sends no bytes of a device: record its hands with dubsar "
+                  "view --input {} --record FILE",
+                  spec.driver, driver->input.source);
+    if (driver->bus != Bus::kService) {
+      DUBSAR_ASSIGN(open, open_device(spec, clock));
+    }
   }
   std::shared_ptr<RecordingWriter> writer;
-  if (options.actions.record->chosen()) {
+  if (records) {
     DUBSAR_ASSIGN(writer, RecordingWriter::create(options.file, spec.driver, "", clock));
     open = [open = std::move(open), writer]() -> Result<std::unique_ptr<Transport>> {
       DUBSAR_ASSIGN(auto transport, open());
@@ -220,7 +228,9 @@ Result<VerbResult> run_replay(const DevicesRequest& options, bool print, Progres
   const SteadyClock clock;
   DUBSAR_ASSIGN(Recording recording, read_recording(options.file));
   const DeviceSpec spec{recording.driver};
-  ReplaySession session(std::move(recording), clock, options.speed);
+  const std::int64_t pictures = pictures_in(recording);
+  // Hands may be found more slowly than pictures came: every one is looked at, unless it is to be in time.
+  ReplaySession session(std::move(recording), clock, options.speed.value_or(pictures > 0 ? 0.0 : 1.0));
   DUBSAR_ASSIGN(const auto device, monitor_device(
                                        spec, [&] { return session.open(); }, session.recorded_clock(), false));
   const auto over = [&] {
@@ -231,6 +241,13 @@ Result<VerbResult> run_replay(const DevicesRequest& options, bool print, Progres
   DUBSAR_ASSIGN(VerbResult result, watch(*device, session.recorded_clock(), progress, over, [&](const json& sample) {
                   if (print) printer(sample);
                 }));
+  const std::int64_t left_out = pictures > 0 ? pictures - result.json["samples"].get<std::int64_t>() : 0;
+  if (pictures > 0) result.json["pictures"] = pictures;
+  if (left_out > 0)
+    result.text += fmt::format(
+        "{} of {} pictures were not looked at: hands are found more slowly than they came; "
+        "without --speed every one is\n",
+        left_out, pictures);
   if (const auto dry = session.ran_dry(); !dry && !result.failure)
     result.failure = Error{ErrorKind::kBadData, fmt::format("{}: {}", options.file, dry.error().message)};
   return result;
@@ -307,7 +324,8 @@ Result<VerbResult> run(const DevicesRequest& options, const CommonOptions& commo
 void add_device_options(Arguments command, DevicesRequest& options) {
   command
       .value("driver", options.device.driver,
-             driver_names(driver_table(), can_be_opened) + "; probe and monitor: leapc; probe and record: webcam")
+             driver_names(driver_table(), can_be_opened) +
+                 "; probe and monitor: leapc, plugin:FILE.so[,...]; probe and record: webcam")
       .required();
   command.value("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
   command.value("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given");
@@ -361,7 +379,10 @@ Verb add_devices_verb(Arguments program) {
   for (const Arguments& sub : {*options->actions.probe, *options->actions.monitor, *options->actions.record})
     add_device_options(sub, *options);
   options->actions.replay = add("replay", "play a recording through its driver");
-  options->actions.replay->value("--speed", options->speed, "2: twice as fast").range(0.01, 1000.0);
+  options->actions.replay
+      ->value("--speed", options->speed,
+              "2: twice as fast; unless given pictures are looked at one by one, as fast as that goes")
+      .range(0.01, 1000.0);
   options->actions.record->writes("file", options->file, FileFormat::kOther, "the recording").required().called("FILE");
   options->actions.replay->reads("file", options->file, "the recording").required().called("FILE");
   for (const Arguments& sub : {*options->actions.monitor, *options->actions.record}) seconds(sub);

@@ -57,7 +57,7 @@ struct PanelShape {
 PanelShape look_at_panel(KioskCheck& check) {
   PanelShape out;
   const KioskProfile& profile = check.profile();
-  auto display = choose_display(profile.display, {}, kBridgePort);
+  auto display = choose_display(profile.display, profile.plugins, kBridgePort);
   if (!display) {
     check.add("/display", display.error().message, kind_of(display.error()));
     return out;
@@ -118,7 +118,7 @@ void look_at_inputs(KioskCheck& check) {
 void look_at_side_panels(KioskCheck& check) {
   for (std::size_t i = 0; i < check.profile().panels.size(); ++i) {
     const KioskPanel& panel = check.profile().panels[i];
-    const auto made = side_panel({panel.display, panel.monitor, panel.size}, {}, kBridgePort);
+    const auto made = side_panel({panel.display, panel.monitor, panel.size}, check.profile().plugins, kBridgePort);
     const bool size = !made && made.error().message.find("size") != std::string::npos;
     if (!made) check.add(fmt::format("/panels/{}/{}", i, size ? "size" : "display"), made.error().message);
   }

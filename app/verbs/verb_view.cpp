@@ -198,6 +198,7 @@ ViewRequest kiosk_options(ViewRequest options, const KioskProfile& profile, cons
   options.what.style = object.style;
   if (options.people.inputs.empty()) options.people.inputs = profile.inputs;
   if (options.panel.monitor.empty() && !options.panel.offscreen) options.panel.monitor = profile.monitor;
+  options.panel.plugins.insert(options.panel.plugins.end(), profile.plugins.begin(), profile.plugins.end());
   if (options.panel.size.empty() && !options.panel.windowed && !options.panel.offscreen)
     options.panel.fullscreen = true;
   return options;

@@ -72,12 +72,18 @@ Result<std::shared_ptr<RecordingWriter>> RecordingWriter::create(const std::file
                                                                  std::string_view driver, std::string_view note,
                                                                  const Clock& clock) {
   DUBSAR_ASSIGN(GrowingFile file, GrowingFile::create(path));
-  const Recording header{std::string(driver), std::string(note), {}, false};
-  return std::shared_ptr<RecordingWriter>(new RecordingWriter(std::move(file), format_recording(header), clock));
+  const bool raw = records_raw(driver);
+  const Recording header{std::string(driver), std::string(note), {}, raw};
+  return std::shared_ptr<RecordingWriter>(new RecordingWriter(std::move(file), format_recording(header), raw, clock));
 }
 
-RecordingWriter::RecordingWriter(GrowingFile file, std::string header, const Clock& clock)
-    : file_(std::move(file)), clock_(&clock), start_(clock.now()), pending_(std::move(header)), written_(start_) {
+RecordingWriter::RecordingWriter(GrowingFile file, std::string header, bool raw, const Clock& clock)
+    : file_(std::move(file)),
+      raw_(raw),
+      clock_(&clock),
+      start_(clock.now()),
+      pending_(std::move(header)),
+      written_(start_) {
   write_out();
 }
 
@@ -89,7 +95,7 @@ void RecordingWriter::add(WireEventKind kind, std::span<const std::byte> bytes, 
   const std::lock_guard lock(mutex_);
   if (!status_ || finished_) return;
   const TimestampNs now = clock_->now();
-  pending_ += format_event({now - start_, kind, request, {bytes.begin(), bytes.end()}});
+  pending_ += format_event({now - start_, kind, request, {bytes.begin(), bytes.end()}}, raw_);
   ++event_count_;
   if (kind == WireEventKind::kRead || kind == WireEventKind::kFeatureGot || kind == WireEventKind::kControl)
     ++heard_count_;

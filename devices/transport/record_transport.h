@@ -38,10 +38,11 @@ class RecordingWriter {
   std::int64_t heard_count() const;  ///< of those that the device said
 
  private:
-  RecordingWriter(GrowingFile file, std::string header, const Clock& clock);
+  RecordingWriter(GrowingFile file, std::string header, bool raw, const Clock& clock);
   void write_out();  ///< with mutex_ held
 
   GrowingFile file_;  // guarded by mutex_
+  const bool raw_;    // of version 2
   const Clock* const clock_;
   const TimestampNs start_;
   mutable std::mutex mutex_;

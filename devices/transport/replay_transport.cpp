@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 namespace dubsar {
 
@@ -13,6 +14,7 @@ class ReplayTransport final : public Transport {
 
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
     const auto& events = session_->recording_.events;
+    if (std::exchange(rests_, false)) return std::size_t{0};
     while (!lost_ && !session_->finished()) {
       const RecordedEvent& event = events[session_->next_];
       if (event.kind != WireEventKind::kRead && event.kind != WireEventKind::kLost) {
@@ -27,6 +29,8 @@ class ReplayTransport final : public Transport {
         break;
       }
       if (event.bytes.empty()) continue;
+      // As fast as it is read, each picture is all there is for a moment: else a driver would take the newest only.
+      rests_ = session_->factor_ == 0.0 && session_->pictures_ && ends_picture(event);
       const std::size_t length = std::min(report.size(), event.bytes.size());
       std::copy_n(event.bytes.begin(), length, report.begin());
       return length;
@@ -100,12 +104,13 @@ class ReplayTransport final : public Transport {
 
   ReplaySession* session_;
   UsbId id_;
-  bool lost_ = false;
+  bool lost_ = false, rests_ = false;
 };
 
 ReplaySession::ReplaySession(Recording recording, const Clock& clock, double factor)
     : recording_(std::move(recording)),
       clock_(&clock),
+      pictures_(records_raw(recording_.driver)),
       factor_(std::isfinite(factor) ? std::clamp(factor, 0.0, 1e6) : 1.0),
       start_(clock.now()) {}
 

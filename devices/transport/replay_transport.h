@@ -47,6 +47,7 @@ class ReplaySession {
 
   const Recording recording_;
   const Clock* const clock_;
+  const bool pictures_;  ///< reports are parts of pictures
   const double factor_;
   const TimestampNs start_;
   std::size_t next_ = 0;          ///< event that read() looks at next

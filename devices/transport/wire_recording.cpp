@@ -12,7 +12,8 @@ namespace dubsar {
 namespace {
 
 constexpr std::string_view kMagic = "dubsar-recording ";
-constexpr int kVersion = 1;
+constexpr int kVersion = 1, kRawVersion = 2;
+constexpr std::size_t kMostPlainBytes = 64;  // of an event that stays readable
 constexpr std::string_view kKinds = "oxrwsfc";
 constexpr TimestampNs kMostRecordedNs = TimestampNs{366} * 86'400 * 1'000'000'000;
 
@@ -76,6 +77,14 @@ std::optional<RecordedEvent> parse_event(std::string_view line) {
   return event;
 }
 
+/// How many bytes follow a line of version 2 as they are.
+std::optional<std::size_t> raw_bytes(std::string_view line) {
+  const std::size_t last = line.rfind(' ');
+  if (last == std::string_view::npos || last + 1 >= line.size() || line[last + 1] != '=') return std::nullopt;
+  const auto count = number<std::size_t>(line.substr(last + 2), 10, 0);
+  return count && *count > 0 && *count <= kMaxReportBytes ? count : std::nullopt;
+}
+
 /// Text of one header line without what would end the line.
 std::string one_line(std::string_view text) {
   std::string out(text.substr(0, 400));
@@ -86,13 +95,28 @@ std::string one_line(std::string_view text) {
 
 }  // namespace
 
-std::string format_event(const RecordedEvent& event) {
+bool records_raw(std::string_view driver) noexcept { return driver == "leap"; }
+
+bool ends_picture(const RecordedEvent& event) noexcept {
+  constexpr std::byte kEndOfFrame{2};
+  return event.kind == WireEventKind::kRead && event.bytes.size() > 2 && (event.bytes[1] & kEndOfFrame) != std::byte{0};
+}
+
+std::int64_t pictures_in(const Recording& recording) {
+  if (!records_raw(recording.driver)) return 0;
+  return std::count_if(recording.events.begin(), recording.events.end(), ends_picture);
+}
+
+std::string format_event(const RecordedEvent& event, bool raw) {
   std::string line = fmt::format("{} {}", event.time, static_cast<char>(event.kind));
   if (event.kind == WireEventKind::kControl) {
     const ControlRequest& r = event.request;
     line += fmt::format(" {:02x} {:02x} {:04x} {:04x}", r.request_type, r.request, r.value, r.index);
   }
-  if (!event.bytes.empty()) {
+  if (raw && event.bytes.size() > kMostPlainBytes) {
+    line += fmt::format(" ={}\n", event.bytes.size());
+    line.append(reinterpret_cast<const char*>(event.bytes.data()), event.bytes.size());
+  } else if (!event.bytes.empty()) {
     line.reserve(line.size() + 2 + 2 * event.bytes.size());
     line += ' ';
     for (const std::byte byte : event.bytes) append_hex(line, std::to_integer<std::uint32_t>(byte), 2);
@@ -102,9 +126,10 @@ std::string format_event(const RecordedEvent& event) {
 }
 
 std::string format_recording(const Recording& recording) {
-  std::string text = fmt::format("{}{}\ndriver {}\n", kMagic, kVersion, one_line(recording.driver));
+  std::string text =
+      fmt::format("{}{}\ndriver {}\n", kMagic, recording.raw ? kRawVersion : kVersion, one_line(recording.driver));
   if (!recording.note.empty()) text += fmt::format("note {}\n", one_line(recording.note));
-  for (const RecordedEvent& event : recording.events) text += format_event(event);
+  for (const RecordedEvent& event : recording.events) text += format_event(event, recording.raw);
   return text;
 }
 
@@ -124,16 +149,32 @@ Result<Recording> parse_recording(std::string_view text) {
     if (line_number == 1) {
       const auto version = line.starts_with(kMagic) ? number<int>(line.substr(kMagic.size()), 10, 0) : std::nullopt;
       if (!version) return fail(ErrorKind::kBadData, "recording: the file does not start with \"{}1\"", kMagic);
-      if (*version != kVersion)
-        return fail(ErrorKind::kBadData, "recording: version {} found, this program reads version {}", *version,
-                    kVersion);
+      if (*version != kVersion && *version != kRawVersion)
+        return fail(ErrorKind::kBadData, "recording: version {} found, this program reads versions {} and {}", *version,
+                    kVersion, kRawVersion);
+      recording.raw = *version == kRawVersion;
     } else if (line_number == 2) {
       if (!line.starts_with("driver ")) return fail(ErrorKind::kBadData, "recording: line 2: expected \"driver NAME\"");
       recording.driver = line.substr(7);
     } else if (line_number == 3 && line.starts_with("note ")) {
       recording.note = line.substr(5);
     } else {
-      auto event = parse_event(line);
+      const std::optional<std::size_t> follows = recording.raw ? raw_bytes(line) : std::nullopt;
+      if (follows && text.size() < *follows + 1) {
+        recording.cut_off = true;
+        break;
+      }
+      auto event = parse_event(follows ? line.substr(0, line.rfind(' ')) : line);
+      if (event && follows) {
+        const auto* const bytes = reinterpret_cast<const std::byte*>(text.data());
+        const bool ends = event->bytes.empty() && text[*follows] == '\n' && event->kind != WireEventKind::kLost &&
+                          event->kind != WireEventKind::kOpened;
+        if (ends)
+          event->bytes.assign(bytes, bytes + *follows);
+        else
+          event.reset();
+        text.remove_prefix(*follows + 1);
+      }
       if (!event)
         return fail(ErrorKind::kBadData, "recording: line {}: \"{}\" found, expected \"NANOSECONDS KIND HEX\"",
                     line_number, one_line(line.substr(0, 60)));

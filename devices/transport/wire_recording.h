@@ -13,6 +13,9 @@
 // Kinds: o opened (bytes: vendor and product, two each, where they are known), x lost, r report read, w report written,
 // s feature report set, f feature report got (first byte: its id), c control request (type, request, value, index, then
 // the data). Lines end with a line feed.
+//
+// Cameras send 35 MB a second, twice that as text, which cannot be read in time: their recordings are of version 2, in
+// which events of more than 64 bytes end in `=N`, a line feed, the N bytes as they are, and a line feed.
 
 #include <cstddef>
 #include <cstdint>
@@ -49,6 +52,7 @@ struct Recording {
   std::string driver;
   std::string note;
   std::vector<RecordedEvent> events;
+  bool raw = false;      ///< of version 2
   bool cut_off = false;  ///< the last line had no end (the program stopped while it was written) and was left out
 };
 
@@ -60,7 +64,14 @@ std::string format_recording(const Recording& recording);
 /// At most 1 GiB. kNoInput, kPermission, kBadData, kIo.
 Result<Recording> read_recording(const std::filesystem::path& path);
 
-/// One event as its line, with the line feed.
-std::string format_event(const RecordedEvent& event);
+/// One event as its line, with the line feed; `raw`: as in version 2.
+std::string format_event(const RecordedEvent& event, bool raw = false);
+
+/// Whether a driver's recordings are of version 2: its reports are pictures.
+bool records_raw(std::string_view driver) noexcept;
+/// A report that ends a picture.
+bool ends_picture(const RecordedEvent& event) noexcept;
+/// Of such a recording: reports whose header says that a picture ends (UVC 1.0, 2.4.3.3). Of others 0.
+std::int64_t pictures_in(const Recording& recording);
 
 }  // namespace dubsar

@@ -109,6 +109,33 @@ TEST(Recording, EveryKindOfEventSurvivesTheFile) {
   EXPECT_EQ(format_recording(*read), text);
 }
 
+TEST(Recording, WhatCamerasSendIsKeptAsItIsWhateverItsBytesAre) {
+  std::vector<std::byte> picture(100'000);
+  for (std::size_t i = 0; i < picture.size(); ++i) picture[i] = static_cast<std::byte>((i * 7919) >> 3);
+  picture[0] = picture[17] = std::byte{'\n'};
+  Recording recording{"leap", "", {}, true};
+  recording.events = {{0, WireEventKind::kOpened, {}, from_hex("2936120a")},
+                      {5, WireEventKind::kRead, {}, picture},
+                      {6, WireEventKind::kControl, {0xa1, 0x81, 0x0300, 0x0500}, picture},
+                      {7, WireEventKind::kRead, {}, from_hex("00ff10")},
+                      {11, WireEventKind::kLost, {}, {}}};
+  const std::string text = format_recording(recording);
+  EXPECT_LT(text.size(), 2 * picture.size() + 300) << "twice that as text";
+  const auto read = parse_recording(text);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(read->raw);
+  EXPECT_FALSE(read->cut_off);
+  EXPECT_EQ(read->events, recording.events);
+  for (const std::size_t length : {std::size_t{40}, std::size_t{70}, std::size_t{5'000}, picture.size() + 60}) {
+    const auto cut = parse_recording(std::string_view(text).substr(0, length));
+    EXPECT_TRUE(!cut || (cut->cut_off && cut->events.size() <= 2)) << length;
+  }
+  for (const char* line : {"5 r =3\n0123\n", "5 r =0\n\n", "5 r 01 =1\n1\n", "5 x =1\n1\n", "5 r =99999999999\n"})
+    EXPECT_EQ(parse_recording(std::string("dubsar-recording 2\ndriver x\n") + line).error().kind, ErrorKind::kBadData)
+        << line;
+  EXPECT_FALSE(parse_recording("dubsar-recording 1\ndriver x\n5 r =1\n1\n")) << "version 1 has none";
+}
+
 TEST(Recording, EveryTruncationIsReadUpToItsLastWholeLineOrRefused) {
   const std::string text = "dubsar-recording 1\ndriver x\n0 o\n5 r 0102\n7 c a1 81 0300 0500 42\n9 x\n";
   for (std::size_t length = 0; length < text.size(); ++length) {
@@ -129,8 +156,8 @@ TEST(Recording, RefusesWhatItDoesNotUnderstand) {
     EXPECT_EQ(parse_recording(head + line + "\n").error().kind, ErrorKind::kBadData) << line;
   }
   EXPECT_FALSE(parse_recording(head + "5 r 01\n4 r 01\n"));
-  const auto newer = parse_recording("dubsar-recording 2\ndriver x\n");
-  EXPECT_NE(newer.error().message.find("version 2 found"), std::string::npos);
+  const auto newer = parse_recording("dubsar-recording 3\ndriver x\n");
+  EXPECT_NE(newer.error().message.find("version 3 found"), std::string::npos);
   EXPECT_FALSE(parse_recording("hello\ndriver x\n"));
 }
 

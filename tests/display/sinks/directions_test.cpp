@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -21,6 +22,7 @@
 #include "display/render/images/test_pattern.h"
 #include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
+#include "display/sinks/catalog/plugin_sink.h"
 #include "display/sinks/catalog/sink_catalog.h"
 #include "display/sinks/field_cadence.h"
 #include "display/sinks/interlaced.h"
@@ -95,11 +97,22 @@ class Directions : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   void open(const std::string& spec, const Observer& viewer = {}) {
-    auto made = SinkCatalog(load_panels(folder_)).make(spec);
+    auto made = SinkCatalog(load_panels(folder_), plugins_).make(spec);
     ASSERT_TRUE(made) << made.error().message;
     sink_ = std::move(*made);
     ASSERT_TRUE(sink_->configure(kScreen));
     sink_->views(viewer);
+  }
+  /// A display of a shared library, or one of ours.
+  void open_of(const std::string& plugin, const std::string& spec) {
+    std::vector<std::shared_ptr<SinkPlugin>> plugins;
+    if (!plugin.empty()) {
+      auto loaded = load_plugins({plugin});
+      ASSERT_TRUE(loaded) << loaded.error().message;
+      plugins = std::move(*loaded);
+    }
+    plugins_ = std::move(plugins);
+    open(spec);
   }
   /// Distinct hues; for views that mix with their neighbours a ramp of light, whose mean stays where it is.
   Rgb8 color(int view) const {
@@ -209,6 +222,7 @@ class Directions : public ::testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("dubsar_directions_" + std::to_string(::getpid()));
   std::unique_ptr<EglContext> context_;
   std::unique_ptr<OutputSink> sink_;
+  std::vector<std::shared_ptr<SinkPlugin>> plugins_;  // outlive what they made
   bool ramp_ = false;
 };
 
@@ -332,6 +346,42 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
     found->second();
     sink_.reset();
   }
+}
+
+/// For whoever makes a display: DUBSAR_SINK=NAME[:options], DUBSAR_SINK_PLUGIN=FILE.so where it is of a shared library,
+/// and DUBSAR_SINK_LIKE, one of the names below: what its viewer's eyes pick out of a picture.
+TEST_F(Directions, OfTheDisplayThatIsNamedAreThoseOfTheOneThatItIsLike) {
+  const auto said = [](const char* name) {
+    const char* const value = std::getenv(name);
+    return std::string(value != nullptr ? value : "");
+  };
+  const std::string spec = said("DUBSAR_SINK"), like = said("DUBSAR_SINK_LIKE");
+  if (spec.empty()) GTEST_SKIP() << "no display is named by DUBSAR_SINK (docs/displays.md)";
+  const std::map<std::string, std::function<void()>> models{
+      {"mono", [&] { one_view(spec); }},
+      {"left_right", [&] { packed(spec, false, false); }},
+      {"right_left", [&] { packed(spec, false, true); }},
+      {"left_above", [&] { packed(spec, true, false); }},
+      {"left_below", [&] { packed(spec, true, true); }},
+      {"rows", [&] { interlaced(spec, InterlacePattern::kRows); }},
+      {"columns", [&] { interlaced(spec, InterlacePattern::kColumns); }},
+      {"checkerboard", [&] { interlaced(spec, InterlacePattern::kCheckerboard); }},
+      {"subpixels", [&] { interlaced(spec, InterlacePattern::kSubpixels); }},
+      {"red_cyan",
+       [&] {
+         glasses(spec, {1, 0, 0});
+       }},
+      {"green_magenta", [&] {
+         glasses(spec, {0, 1, 0});
+       }}};
+  std::string known;
+  for (const auto& [name, model] : models) known += (known.empty() ? "" : ", ") + name;
+  const auto model = models.find(like);
+  ASSERT_NE(model, models.end()) << "DUBSAR_SINK_LIKE=" << like << " found, expected one of " << known;
+  open_of(said("DUBSAR_SINK_PLUGIN"), spec);
+  if (HasFatalFailure()) return;
+  model->second();
+  sink_.reset();
 }
 
 }  // namespace
