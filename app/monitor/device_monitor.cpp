@@ -54,7 +54,8 @@ json to_json(const InputFrame& frame) {
     if (head.right_eye_m) one["right_eye_m"] = numbers(*head.right_eye_m);
     out["heads"].push_back(std::move(one));
   }
-  if (frame.puck) out["puck"] = {{"push", numbers(frame.puck->push)}, {"twist", numbers(frame.puck->twist)}};
+  if (frame.space_mouse)
+    out["puck"] = {{"push", numbers(frame.space_mouse->push)}, {"twist", numbers(frame.space_mouse->twist)}};
   for (const InputEvent& event : frame.events)
     if (event.kind == EventKind::kKey) out["keys"].push_back({{"key", event.key}, {"down", event.down}});
   return out;
