@@ -6,7 +6,16 @@
 
 namespace dubsar::app {
 
-double dwell_button_radius(double aspect) noexcept { return std::min(0.095, 0.14 * aspect); }
+// Three of them in a row fit an upright panel.
+double dwell_button_radius(double aspect) noexcept {
+  return std::min(0.095, (upright_panel(aspect) ? 0.125 : 0.14) * aspect);
+}
+
+GalleryRoom gallery_room(double aspect) noexcept {
+  constexpr double kWordsBelow = 0.3;  // a title, a tutorial or both above a sentence
+  if (upright_panel(aspect)) return {.words = kWordsBelow};
+  return {.sides = (2.0 * dwell_button_radius(aspect) + 2.0 * kDwellButtonMargin) / aspect};
+}
 
 std::vector<DwellButtonPicture> place_buttons(std::span<const DwellButton> buttons, double aspect) {
   std::vector<DwellButtonPicture> out;
@@ -17,7 +26,9 @@ std::vector<DwellButtonPicture> place_buttons(std::span<const DwellButton> butto
   constexpr std::array<int, kDwellButtonCount> kRow{0, 1, 2, 0, 2};
   for (const DwellButton button : buttons) {
     const int row = kRow[static_cast<std::size_t>(button)];
-    out.push_back({button, {x, 0.5 - (radius + margin) - row * (2.0 * radius + margin)}, radius, 0.0});
+    const double first = 0.5 - (radius + margin), along = row * (2.0 * radius + margin);
+    const glm::dvec2 at = upright_panel(aspect) ? glm::dvec2(x - along / aspect, first) : glm::dvec2(x, first - along);
+    out.push_back({button, at, radius, 0.0});
   }
   return out;
 }

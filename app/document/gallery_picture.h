@@ -34,16 +34,24 @@ double dwell_button_radius(double aspect) noexcept;
 inline constexpr double kDwellButtonMargin = 0.035;
 
 /// The places of some buttons on a panel that is `aspect` times as wide as high: a column at the upper right, where
-/// hands that play with the object rarely rest.
+/// hands that play with the object rarely rest; on upright panels a row from there.
 std::vector<DwellButtonPicture> place_buttons(std::span<const DwellButton> buttons, double aspect);
 
-/// Of a panel's height, above and below the object: what words take (app/panels/gallery_page.h).
-inline constexpr double kWordsShare = 0.2;
+/// What is left free around the object, for words (app/panels/gallery_page.h), buttons and tutorials.
+struct GalleryRoom {
+  double words = 0.2;  ///< of the panel's height, above and below
+  double sides = 0.0;  ///< of its width, left and right
+};
+/// Of a panel that is `aspect` times as wide as high. Upright panels have buttons in a row above the object and all
+/// words below it; others have buttons and tutorials at its sides.
+GalleryRoom gallery_room(double aspect) noexcept;
+inline bool upright_panel(double aspect) noexcept { return aspect < 1.0; }
 
 /// The same buttons on a panel of another shape, as full as they are.
 std::vector<DwellButtonPicture> buttons_on(std::span<const DwellButtonPicture> buttons, double aspect);
 
 struct GalleryPicture {
+  bool blank = false;               ///< all is left room for, nothing is drawn there
   std::string line;                 ///< one sentence; empty: none
   bool right_to_left = false;       ///< how it is set
   std::string title;                ///< of what is shown now; may be empty

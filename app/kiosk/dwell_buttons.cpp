@@ -12,8 +12,9 @@ constexpr TimestampNs kForgives = 300'000'000;  // a tremble over the edge, or a
 constexpr TimestampNs kSignGone = 1'000'000'000;
 constexpr double kEdge = 1.25;  // of the radius, for a hand that is on the button already
 
-/// Above, below or on one of the buttons, whether or not one is shown there now.
+/// In the column of buttons, or in their row, whether or not one is shown there now.
 bool in_their_column(const glm::dvec2& at, double aspect) {
+  if (upright_panel(aspect)) return at.y > 0.5 - (kEdge * 2.0 * dwell_button_radius(aspect) + kDwellButtonMargin);
   return at.x > 0.5 - (kEdge * 2.0 * dwell_button_radius(aspect) + kDwellButtonMargin) / aspect;
 }
 

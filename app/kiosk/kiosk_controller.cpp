@@ -304,7 +304,7 @@ GalleryPicture KioskController::picture(const VisitPicture& visit) const {
   out.tutorial_s = visit.tutorial_s;
   if (const TourStep* const step = tour_.step()) {
     out.title = text_in(step->title, spoken);
-    out.line = text_in(step->text, spoken);
+    out.line = tour_.in_step_s() >= step->says_s ? text_in(step->text, spoken) : std::string();
     out.tutorial.reset();
     out.step = tour_.at() + 1;
     out.steps = tour_.steps();

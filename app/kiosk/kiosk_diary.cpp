@@ -2,6 +2,7 @@
 
 #include <ctime>
 
+#include "app/words/text.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
@@ -56,11 +57,12 @@ void KioskDiary::look_at_day(std::int64_t visits) {
 std::vector<std::string> KioskDiary::state() const {
   std::vector<std::string> out;
   for (const SourceRow& row : devices_)
-    out.push_back(row.spec + (row.health == SourceHealth::kPresent ? ": works"
-                              : row.health == SourceHealth::kOff   ? ": switched off"
-                                                                   : ": " + row.reason));
+    out.push_back(row.health == SourceHealth::kPresent ? tr("operator.works", row.spec)
+                  : row.health == SourceHealth::kOff   ? tr("operator.off", row.spec)
+                  : row.health == SourceHealth::kLost  ? tr("operator.lost", row.spec, row.reason)
+                                                       : tr("operator.missing", row.spec, row.reason));
   out.insert(out.end(), troubles_.begin(), troubles_.end());
-  if (troubles_.empty()) out.emplace_back("no trouble since it began");
+  if (troubles_.empty()) out.push_back(tr("operator.no_trouble"));
   return out;
 }
 

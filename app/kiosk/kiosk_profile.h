@@ -36,11 +36,15 @@ struct VisitorEyes {
   double parallax_deg = 1.0;  ///< that they may converge more or less than on the panel, 0.1..3
 };
 
-struct KioskProfile {
+/// Code of others that runs as part of the kiosk.
+struct KioskPlugins {
+  std::vector<std::string> plugins{};  ///< shared libraries with displays
+};
+
+struct KioskProfile : KioskPlugins {
   std::vector<KioskObject> objects;          ///< at least one
   std::vector<std::string> languages{"en"};  ///< the first one is spoken at first
   std::filesystem::path words{};             ///< changes to the program's sentences; empty: none
-  std::vector<std::string> plugins{};        ///< shared libraries with displays; loading one runs its code
   std::string display = "mono", monitor{};   ///< as of `dubsar view`; monitor empty: where the panel is
   std::vector<KioskPanel> panels{};
   std::vector<std::string> inputs{};  ///< as of `dubsar view --input`; empty: what is plugged in, no keyboard

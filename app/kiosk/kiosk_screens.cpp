@@ -49,10 +49,8 @@ class ScreenDirector final : public SessionController {
     wants_ = nullptr;
     if (out.picture) look_at(*out.picture, out);
     if (out.picture && !words_) {
-      out.picture->title.clear();
-      out.picture->line.clear();
+      out.picture->blank = true;
       if (!out.picture->menu.empty()) out.picture->menu = {" "};
-      out.picture->steps = 0;
     }
     return out;
   }
@@ -176,7 +174,7 @@ Result<std::vector<KioskScreen>> kiosk_screens(const TriMesh& mesh, ViewOptions 
   KioskController kiosk(std::move(parts));
   ScreenDirector director(kiosk, pin, words);
   view.guide = &director;
-  view.stage.room.words = kWordsShare;
+  view.stage.room.gallery = true;
   view.window.reset();
   view.inputs = {"hands"};
   view.sources.make = [](std::string_view, const InputConfig&) -> Result<std::unique_ptr<InputSource>> {

@@ -20,7 +20,7 @@ struct KioskScreen {
 /// order; those that the object has not, such as an envelope, are missing. `view` says display, pixels and style, as
 /// for a session without a window; its inputs, its time and its guide are not looked at, nor the journal, the hours,
 /// the file of the operator's key in `parts`. Makes a GL context for the time of the call; main thread. Errors of
-/// run_view(). Without `words`: the same pictures as they are beside them.
+/// run_view(). Without `words`: the same pictures without words, tutorials and buttons.
 Result<std::vector<KioskScreen>> kiosk_screens(const TriMesh& mesh, ViewOptions view, KioskParts parts,
                                                Progress& progress, bool words = true);
 

@@ -17,7 +17,7 @@ constexpr std::string_view kTourFormat = "dubsar tour";
 constexpr std::size_t kMostSteps = 64, kMostLabels = 16, kMostKeys = 1000;
 constexpr double kLongestS = 600.0;
 constexpr std::array<std::string_view, 4> kTourMembers{"format", "version", "steps", "comment"};
-constexpr std::array<std::string_view, 5> kStepMembers{"title", "text", "labels", "stays_s", "keyframes"};
+constexpr std::array<std::string_view, 6> kStepMembers{"title", "text", "labels", "stays_s", "says_s", "keyframes"};
 constexpr std::array<std::string_view, 4> kLabelMembers{"text", "part", "at_mm", "normal"};
 constexpr std::array<std::string_view, 6> kKeyMembers{"time_s", "camera", "light", "unpack", "style", "parts"};
 constexpr std::array<std::string_view, 3> kCameraMembers{"rotation_wxyz", "zoom", "pan"};
@@ -77,6 +77,7 @@ Result<TourStep> read_step(const json& object, json& before, const std::string& 
   out.title = read_texts(fields, object, "title");
   out.text = read_texts(fields, object, "text");
   out.stays_s = fields.number("stays_s", 0.0, kLongestS, &out.stays_s);
+  out.says_s = fields.number("says_s", 0.0, kLongestS, &out.says_s);
   DUBSAR_TRY(fields.finish(ErrorKind::kBadData));
   DUBSAR_ASSIGN(out.labels, read_list<TourLabel>(object, "labels", 0, kMostLabels, where, read_label));
   DUBSAR_ASSIGN(out.keyframes, read_keys(object, before, where));
@@ -116,6 +117,7 @@ std::string format_tour(const Tour& tour) {
   json out{{"format", kTourFormat}, {"version", 1}, {"steps", json::array()}};
   for (const TourStep& step : tour.steps) {
     json one{{"title", step.title}, {"text", step.text}, {"stays_s", step.stays_s}};
+    if (step.says_s > 0.0) one["says_s"] = step.says_s;
     if (!step.labels.empty()) one["labels"] = json::array();
     for (const TourLabel& label : step.labels) one["labels"].push_back(json_of(label));
     one["keyframes"] = json::parse(format_film(step.keyframes)).at("keyframes");

@@ -29,6 +29,7 @@ struct TourStep {
   Texts title{}, text{};
   std::vector<TourLabel> labels{};
   double stays_s = 6.0;
+  double says_s = 0.0;                ///< the text waits for so long, from the step's beginning
   std::vector<Keyframe> keyframes{};  ///< at least one; times above 0, rising
   friend bool operator==(const TourStep&, const TourStep&) = default;
 };

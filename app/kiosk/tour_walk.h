@@ -38,6 +38,7 @@ class TourWalk {
   std::optional<TourMoment> update(TimestampNs now);
   /// The step that is walked; none: none is.
   const TourStep* step() const noexcept { return walks() ? &tour_.steps[step_] : nullptr; }
+  double in_step_s() const noexcept { return since_s_; }  ///< since its beginning
   std::size_t at() const noexcept { return step_; }
   std::size_t steps() const noexcept { return tour_.steps.size(); }
 

@@ -13,6 +13,8 @@
 namespace dubsar::app {
 namespace {
 
+constexpr float kNarrow = 1.25f;        // panels whose sides are little more than what buttons take
+constexpr float kWordsEnd = 0.2f;       // of the height, at the lower edge
 constexpr float kSentenceRoom = 0.88f;  // for a sentence, of the panel's width
 constexpr double kLargestLetters = 0.075, kSmallerLetters = 0.8;
 constexpr ImGuiWindowFlags kBare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
@@ -31,12 +33,12 @@ void fill_band(float top, float bottom, float width, double dark) {
   ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(0.0f, top), ImVec2(width, bottom), ground_at(dark));
 }
 
-/// Lines one below the other, each in the middle of a width; from the right where one reads so.
-void draw_lines(const SetWords& set, float width, float top, bool right_to_left) {
+/// Lines one below the other, each in the middle of the panel; from the right of a room there where one reads so.
+void draw_lines(const SetWords& set, float width, float room, float top, bool right_to_left) {
   ImFont* const font = ImGui::GetFont();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const auto size = static_cast<float>(set.size);
-  const float right = 0.5f * (1.0f + kSentenceRoom) * width;
+  const float right = 0.5f * (width + kSentenceRoom * room);
   for (std::size_t i = 0; i < set.lines.size(); ++i) {
     const float wide = font->CalcTextSizeA(size, 1e6f, 0.0f, set.lines[i].c_str()).x;
     const ImVec2 at(right_to_left ? right - wide : 0.5f * (width - wide), top + size * static_cast<float>(i));
@@ -44,20 +46,22 @@ void draw_lines(const SetWords& set, float width, float top, bool right_to_left)
   }
 }
 
-void draw_sentence(const GalleryPicture& picture, float size_px, float width, float height) {
+/// Returns where it begins, from above: the lower edge of what is free.
+float draw_sentence(const GalleryPicture& picture, float size_px, float width, float height) {
   const float bottom = height - 0.03f * height;
-  if (picture.line.empty()) return;
+  if (picture.line.empty()) return bottom;
   const SetWords set = set_words(picture.line, size_px, width, picture.right_to_left);
   const float top = bottom - static_cast<float>(set.tall), pad = 0.4f * static_cast<float>(set.size);
   fill_band(top - pad, height, width, picture.dark);
-  draw_lines(set, width, top, picture.right_to_left);
+  if (!picture.blank) draw_lines(set, width, width, top, picture.right_to_left);
+  return top - pad;
 }
 
 /// A dot for each step of a tour, those that were seen and the present one full; from the right where one reads so.
 void draw_steps(const GalleryPicture& picture, float width, float y, float radius) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImU32 amber = ImGui::GetColorU32(ImVec4(0.85f, 0.64f, 0.25f, 1.0f));
-  if (picture.steps == 0) return;
+  if (picture.steps == 0 || picture.blank) return;
   const float apart = 4.0f * radius, middle = 0.5f * static_cast<float>(picture.steps + 1);
   for (std::size_t i = 1; i <= picture.steps; ++i) {
     const float aside = apart * (static_cast<float>(i) - middle);
@@ -69,19 +73,58 @@ void draw_steps(const GalleryPicture& picture, float width, float y, float radiu
   }
 }
 
-/// A title, and below it a tour's steps, in what buttons leave of the width.
-void draw_title(const GalleryPicture& picture, float size_px, float width, float height) {
-  if (picture.title.empty() && picture.steps == 0) return;
+/// A title, and below it a tour's steps, in the middle of what buttons leave of the width; on upright panels above the
+/// sentence, which begins at `sentence`.
+/// Returns where words begin below the object.
+float draw_title(const GalleryPicture& picture, float size_px, float width, float height, float sentence) {
+  if (picture.title.empty() && picture.steps == 0) return sentence;
+  const bool upright = upright_panel(width / height);
   float room = width;
   for (const DwellButtonPicture& button : picture.buttons)
-    if (button.at.y + button.radius > 0.5 - kWordsShare)
+    if (!upright && button.at.y + button.radius > 0.5 - gallery_room(width / height).words)
       room = std::min(
-          room, (0.5f + static_cast<float>(button.at.x)) * width - 1.1f * static_cast<float>(button.radius) * height);
+          room, 2.0f * (static_cast<float>(button.at.x) * width - 1.1f * static_cast<float>(button.radius) * height));
+  const PushedTitleFont serif(picture.title);
   const SetWords set = set_words(picture.title, kTitleLarger * size_px, room, picture.right_to_left);
-  const float top = 0.03f * height, below = top + static_cast<float>(set.tall) + 0.3f * size_px;
-  fill_band(0.0f, below + (picture.steps > 0 ? 0.5f * size_px : 0.0f), width, picture.dark);
-  draw_lines(set, room, top, picture.right_to_left);
-  draw_steps(picture, room, below + 0.1f * size_px, 0.16f * size_px);
+  const float dots = picture.steps > 0 ? 0.5f * size_px : 0.0f, pad = 0.3f * size_px;
+  const auto tall = static_cast<float>(set.tall);
+  const float top = upright ? sentence - dots - pad - tall : 0.03f * height, below = top + tall + pad;
+  if (upright)
+    fill_band(top - pad, sentence, width, picture.dark);
+  else
+    fill_band(0.0f, below + dots, width, picture.dark);
+  if (!picture.blank) draw_lines(set, width, room, top, picture.right_to_left);
+  draw_steps(picture, width, below + 0.1f * size_px, 0.16f * size_px);
+  return upright ? top - pad : sentence;
+}
+
+/// On narrow panels the object's picture ends where buttons begin, however near it is drawn.
+void end_picture_at_buttons(const GalleryPicture& picture, float width, float height) {
+  const float aspect = width / height;
+  const float taken = static_cast<float>(2.0 * (dwell_button_radius(aspect) + kDwellButtonMargin)) * height;
+  if (upright_panel(aspect))
+    fill_band(0.0f, taken, width, picture.dark);
+  else if (aspect < kNarrow)
+    ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(width - taken, 0.0f), ImVec2(width, height - kWordsEnd * height),
+                                              ground_at(picture.dark));
+}
+
+/// Beside the object; on upright panels between it and the words.
+void draw_tutorial_disc(const GalleryPicture& picture, float width, float height, float sentence) {
+  const double aspect = width / height;
+  const GalleryRoom free = gallery_room(aspect);
+  float radius = 0.2f * height, x = 0.0f, y = 0.55f * height;
+  if (upright_panel(aspect)) {
+    const float from = (1.0f - static_cast<float>(free.words)) * height;
+    radius = std::min(0.2f * width, 0.46f * (sentence - from));
+    x = 0.5f * width;
+    y = from + 1.08f * radius;
+  } else {
+    const float side = width > kNarrow * height ? 0.4f * width : static_cast<float>(free.sides) * width;
+    radius = std::min(radius, 0.4f * side);
+    x = 1.25f * radius;
+  }
+  draw_tutorial(tutorial_pose(*picture.tutorial, picture.tutorial_s), x, y, radius);
 }
 
 void draw_menu(const std::vector<std::string>& rows, float size_px, float width, float height) {
@@ -190,17 +233,12 @@ void draw_gallery(const GalleryPicture& picture, float width, float height, floa
     list.AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(width, height),
                        ImGui::GetColorU32(ImVec4(0.0f, 0.0f, 0.0f, static_cast<float>(picture.dark))));
   const auto size = static_cast<float>(letters_size(picture.letter_mm, height, px_per_mm));
-  draw_sentence(picture, size, width, height);
-  if (picture.tutorial) {
-    // Beside the object where there is room, else above the words.
-    const bool wide = width > 1.25f * height;
-    const float radius = wide ? std::min(0.2f * height, 0.16f * width) : std::min(0.14f * height, 0.2f * width);
-    const float x = wide ? 1.25f * radius : 0.5f * width,
-                y = wide ? 0.55f * height : (1.0f - static_cast<float>(kWordsShare)) * height - 1.15f * radius;
-    draw_tutorial(tutorial_pose(*picture.tutorial, picture.tutorial_s), x, y, radius);
-  }
-  draw_title(picture, size, width, height);
-  for (const DwellButtonPicture& button : picture.buttons) draw_dwell_button(button, width, height);
+  const float sentence = draw_sentence(picture, size, width, height);
+  const float words = draw_title(picture, size, width, height, sentence);
+  if (picture.tutorial && !picture.blank) draw_tutorial_disc(picture, width, height, words);
+  if (!picture.buttons.empty()) end_picture_at_buttons(picture, width, height);
+  if (!picture.blank)
+    for (const DwellButtonPicture& button : picture.buttons) draw_dwell_button(button, width, height);
   if (!picture.menu.empty()) draw_menu(picture.menu, std::max(size * 0.6f, 14.0f), width, height);
   ImGui::End();
   ImGui::PopStyleVar();

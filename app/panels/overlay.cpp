@@ -53,6 +53,7 @@ constexpr std::array<std::pair<std::string_view, ImGuiKey_>, 18> kEditKeys{{{"le
 
 void add_fonts(const std::uint16_t* letters) {
   for (const float size_px : {kLargeFontPx, kPanelFontPx}) add_panel_font(*ImGui::GetIO().Fonts, size_px, letters);
+  add_title_font(*ImGui::GetIO().Fonts, kLargeFontPx);
 }
 
 constexpr ImGuiWindowFlags kPlain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdio>
 #include <string_view>
+#include <vector>
+
+#include "display/render/images/utf8.h"
 
 // The file goes into the program as it is; the assembler reads it, which takes
 // no time for a compiler.
@@ -19,11 +23,21 @@ __asm__(
     ".globl dubsar_panel_font_end\n"
     "dubsar_panel_font_end:\n"
     ".byte 0\n"
+    ".balign 16\n"
+    ".globl dubsar_title_font\n"
+    "dubsar_title_font:\n"
+    ".incbin \"" DUBSAR_TITLE_FONT
+    "\"\n"
+    ".globl dubsar_title_font_end\n"
+    "dubsar_title_font_end:\n"
+    ".byte 0\n"
     ".previous\n");
 
 extern "C" {  // NOLINTBEGIN(readability-identifier-naming): the assembler's names
 extern const unsigned char dubsar_panel_font[];
 extern const unsigned char dubsar_panel_font_end[];
+extern const unsigned char dubsar_title_font[];
+extern const unsigned char dubsar_title_font_end[];
 }  // NOLINTEND(readability-identifier-naming)
 
 namespace dubsar::app {
@@ -38,6 +52,35 @@ ImFont* add_panel_font(ImFontAtlas& atlas, float size_px, const std::uint16_t* l
   // ImGui does not write to what it does not own.
   return atlas.AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()), size_px,
                                     &font, letters);
+}
+
+namespace {
+constexpr const char* kTitleFontName = "dubsar title";
+}
+
+ImFont* add_title_font(ImFontAtlas& atlas, float size_px) {
+  ImFontConfig font;
+  font.FontDataOwnedByAtlas = false;
+  std::snprintf(font.Name, sizeof(font.Name), "%s", kTitleFontName);
+  return atlas.AddFontFromMemoryTTF(const_cast<unsigned char*>(dubsar_title_font),
+                                    static_cast<int>(dubsar_title_font_end - dubsar_title_font), size_px, &font,
+                                    panel_letters());
+}
+
+PushedTitleFont::PushedTitleFont(std::string_view words, bool wanted) {
+  if (!wanted) return;
+  const std::vector<unsigned> letters = code_points(std::string(words));
+  for (ImFont* const font : ImGui::GetIO().Fonts->Fonts) {
+    if (std::string_view(font->GetDebugName()) != kTitleFontName) continue;
+    pushed_ = std::all_of(letters.begin(), letters.end(), [&](unsigned code) {
+      return code <= ' ' || (code <= 0xFFFF && font->FindGlyphNoFallback(static_cast<ImWchar>(code)) != nullptr);
+    });
+    if (pushed_) ImGui::PushFont(font);
+    return;
+  }
+}
+PushedTitleFont::~PushedTitleFont() {
+  if (pushed_) ImGui::PopFont();
 }
 
 double panel_capital() noexcept {

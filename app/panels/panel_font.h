@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 struct ImFont;
 struct ImFontAtlas;
@@ -12,6 +13,20 @@ namespace dubsar::app {
 
 /// Adds it to an atlas, in this size and with these letters (panel_letters()).
 ImFont* add_panel_font(ImFontAtlas& atlas, float size_px, const std::uint16_t* letters);
+
+/// The serif of titles: added to an atlas as panels' fonts are, used while this lives, where it has all letters of
+/// `words`.
+ImFont* add_title_font(ImFontAtlas& atlas, float size_px);
+class PushedTitleFont {
+ public:
+  explicit PushedTitleFont(std::string_view words, bool wanted = true);
+  ~PushedTitleFont();
+  PushedTitleFont(const PushedTitleFont&) = delete;
+  PushedTitleFont& operator=(const PushedTitleFont&) = delete;
+
+ private:
+  bool pushed_ = false;
+};
 
 std::span<const unsigned char> panel_font();
 

@@ -26,6 +26,7 @@ TextRuler::TextRuler(double width_mm, double height_mm, double reading_distance_
   io.DisplaySize = ImVec2(static_cast<float>(width_px_), static_cast<float>(kRulerPx));
   io.DeltaTime = 1.0f / 60.0f;
   add_panel_font(*io.Fonts, kLargeFontPx, panel_letters_of_all());
+  add_title_font(*io.Fonts, kLargeFontPx);
   unsigned char* pixels = nullptr;
   int wide = 0, high = 0;
   io.Fonts->GetTexDataAsAlpha8(&pixels, &wide, &high);
@@ -49,6 +50,7 @@ std::string TextRuler::wrong(const std::string& text, bool title) const {
   if (!missing.empty())
     return fmt::format("letters that the font lacks ({}) are shown as ?; write it without", missing);
   const double size = title ? kTitleLarger * size_ : size_;
+  const PushedTitleFont serif(text, title);
   const SetWords set = set_words(text, size, width_px_, has_right_to_left(text));
   const double lines = std::round(set.tall / set.size), most = title ? kTitleLines : kSentenceLines;
   if (lines <= most) return {};

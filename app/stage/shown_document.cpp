@@ -7,6 +7,7 @@
 namespace dubsar::app {
 namespace {
 
+constexpr Rgb8 kMutedClay{186, 172, 154}, kMutedStripe{168, 152, 132};  // of what is inferred, for visitors
 constexpr double kPartsGap = 0.1;  // between what is taken apart, of the object's height
 
 /// A body with the pores in its clay. Both stand where they are moved to, besides what takes them apart.
@@ -76,6 +77,11 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
   };
   adapt(out.style);
   adapt(out.other.style);
+  for (Style* const style : {&out.style, &out.other.style}) {
+    if (!stage.room.gallery) break;
+    style->inferred_color = kMutedClay;
+    style->inferred_stripe = kMutedStripe;
+  }
   out.fog.strength = document.fog;
   for (const Cut& cut : document.clips)
     if (cut.on) out.clips.push_back({cut.normal * cut.distance_mm / glm::dot(cut.normal, cut.normal), -cut.normal});

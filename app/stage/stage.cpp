@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "app/document/gallery_picture.h"
 #include "app/stage/stage_parts.h"
 #include "core/base/system/budget.h"
 #include "core/base/system/log.h"
@@ -76,11 +77,12 @@ Result<void> Stage::Parts::prepare(OutputSink& with) {
   plane.aside_mm = traits.exact_pixels ? glm::dvec3(0.0) : glm::dvec3(plane.middle, 0.0);
   // The longest edge fits both ways, so that every side of the object does.
   const glm::dvec3 size = object.box.size();
+  const GalleryRoom beside = options.room.gallery ? gallery_room(rect.size.x / rect.size.y) : GalleryRoom{.words = 0.0};
   plane.magnification = options.magnification > 0 ? options.magnification
                         : traits.worn
                             ? 1.0  // life size
-                            : std::min((1.0 - 2.0 * options.room.margin) * rect.size.x,
-                                       (1.0 - 2.0 * std::max(options.room.margin, options.room.words)) * rect.size.y) /
+                            : std::min((1.0 - 2.0 * std::max(options.room.margin, beside.sides)) * rect.size.x,
+                                       (1.0 - 2.0 * std::max(options.room.margin, beside.words)) * rect.size.y) /
                                   std::max({size.x, size.y, size.z, 1e-9});
   return {};
 }

@@ -40,7 +40,8 @@ enum class Subject {
 /// What the object may take up.
 struct StageRoom {
   double margin = 0.08;  ///< free border around it at zoom 1
-  double words = 0.0;    ///< share of the height, above and below, that is left to words at zoom 1
+  /// Words and buttons stand beside the object (gallery_room()), and what nobody has seen is paler clay, not blue.
+  bool gallery = false;
   /// Degrees that the eyes may converge more or less than on the panel (display/optics/comfort.h): what would be deeper
   /// makes the picture flatter. 0: as deep as things are. Worn displays show the world as it is.
   double most_parallax_deg = 0.0;

@@ -155,7 +155,7 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
     DUBSAR_ASSIGN(ViewOptions view, session.options(with_monitor(profile, panel), object, panel.display));
     view.guide = &guide;
     view.around.notices = view.around.panels = false;
-    view.stage.room.words = kWordsShare;
+    view.stage.room.gallery = true;
     view.stage.room.most_parallax_deg = profile.eyes.parallax_deg;
     bool elsewhere = false;
     if (view.window) view.time.outdated = [&] { return elsewhere = monitors.changed(SteadyClock().now()); };

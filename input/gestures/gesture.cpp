@@ -21,6 +21,7 @@ void GestureRecognizer::lose(TimestampNs now) {
   grip_.lose(now, events_);
   swipe_.lose();
   dwell_.lose();
+  fingers_.lose();
   stillness_.lose();
   seen_.came.reset();
   velocity_mps_ = glm::dvec3(0.0);
@@ -49,7 +50,9 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand, const Han
   history_.add({hand->time, hand->palm.position_m});
   velocity_mps_ = history_.velocity_mps();
   const bool may_begin = now - *seen_.came >= options_.cooldown_ns;
-  stillness_.update(now, position_m_);
+  fingers_.update(now, hand->grab_strength, hand->pinch_distance_m);
+  closing_ = fingers_.closing(now);
+  stillness_.update(now, position_m_, closing_);
   const TimestampNs still_ns = stillness_.still_for(now);
   const bool at_signs = scene_.signs_above && position_m_.x >= options_.place.signs_from_x_m &&
                         position_m_.y >= options_.place.signs_from_y_m;
@@ -59,8 +62,9 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand, const Han
   // is not made to wait.
   const bool sure = standing.sure && (scene_.beginner || !standing.doubtful);
   const bool known_long = scene_.beginner || now - *seen_.came >= kReachedIn;
-  grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts, sure && known_long, scene_.beginner}, *hand,
-               options_, events_);
+  grip_.update(
+      {now, since_ns, glm::length(velocity_mps_), still_ns, closing_, acts, sure && known_long, scene_.beginner}, *hand,
+      options_, events_);
   const bool free = may_begin && !grip_.holds();
   const bool known = now - *seen_.came >= (sure ? options_.swipe.sure_ns : options_.swipe.known_ns);
   if (const auto swiped = swipe_.update({now, still_ns, history_.newest().position_m, velocity_mps_,

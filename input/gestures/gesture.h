@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "input/gestures/closing_fingers.h"
 #include "input/gestures/dwell_detector.h"
 #include "input/gestures/gesture_event.h"
 #include "input/gestures/gesture_options.h"
@@ -37,6 +38,7 @@ class GestureRecognizer {
   bool grabbing() const noexcept { return grip_.grabbing(); }
   bool pinching() const noexcept { return grip_.pinching(); }
   bool may_grab() const noexcept { return grip_.may_grab(); }  ///< it was seen open, so that closing it takes hold
+  bool fingers_close() const noexcept { return closing_; }     ///< and drag the palm along
   const glm::dvec3& position_m() const noexcept { return position_m_; }  ///< of the palm, filtered; stays while held
   const glm::dvec3& velocity_mps() const noexcept { return velocity_mps_; }
   double dwell_progress() const noexcept { return dwell_.progress(); }  ///< 0..1
@@ -57,9 +59,11 @@ class GestureRecognizer {
   GripDetector grip_;
   SwipeDetector swipe_;
   DwellDetector dwell_;
+  ClosingFingers fingers_;
   Stillness stillness_;
   std::vector<GestureEvent> events_;
   Sight seen_{};
+  bool closing_ = false;
   GestureScene scene_;
   glm::dvec3 position_m_{0.0}, velocity_mps_{0.0}, cursor_m_{0.0};
 };

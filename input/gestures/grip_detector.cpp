@@ -37,7 +37,7 @@ GripDetector::Closing GripDetector::judge(const Moment& moment, const GestureOpt
     return Closing::kOpen;
   }
   const bool still = moment.still_ns >= options.grab.still_ns;
-  const bool rests = options.grab.still_ns == 0 || moment.speed_mps <= options.grab.rest_mps;
+  const bool rests = options.grab.still_ns == 0 || moment.rests(options);
   if (!rests && !(still && moment.sure_person)) {
     since = -1;
     return Closing::kOnItsWay;
@@ -65,9 +65,10 @@ void GripDetector::grab(const Moment& moment, const HandFrame& hand, const Gestu
   } else {
     const double slack = moment.beginner && closed_since_ >= 0 ? options.grab.beginner_slack : 0.0;
     const bool gently = grab >= options.grab.gentle - slack && grab - open_grab_ >= options.grab.rise - slack &&
-                        !points(hand) && moment.speed_mps <= options.grab.rest_mps;
+                        !points(hand) && moment.rests(options);
     const bool closed = moment.may_begin && grab_armed_ && (grab >= options.grab.on || gently);
-    const Closing closing = judge(moment, options, closed, closed_since_);
+    Closing closing = judge(moment, options, closed, closed_since_);
+    if (pinching_ && closed) closing = Closing::kSure;  // the thumb came first
     if (closing == Closing::kOpen)
       open_grab_ = std::min(grab, open_grab_ + kForgetsOpenPerS * 1e-9 * static_cast<double>(moment.since_ns));
     // What closes while the hand is on its way does not take hold when it has come: hands at the chin are half closed.

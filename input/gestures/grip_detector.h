@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "input/gestures/closing_fingers.h"
 #include "input/gestures/gesture_event.h"
 #include "input/gestures/gesture_options.h"
 #include "input/hand_frame.h"
@@ -15,9 +16,15 @@ class GripDetector {
     TimestampNs now = 0, since_ns = 0;  ///< since the sample before
     double speed_mps = 0.0;             ///< of the palm
     TimestampNs still_ns = 0;           ///< for how long the hand has been held still
+    bool closing = false;               ///< its fingers move, and drag the palm along
     bool may_begin = true;
     bool sure_person = true;  ///< false: it may be somebody else's, who reaches in
     bool beginner = false;    ///< who has not turned anything yet
+    bool rests(const GestureOptions& options) const noexcept {
+      return speed_mps <= options.grab.rest_mps ||
+             (closing && sure_person && options.grab.still_ns > 0 && still_ns >= options.grab.still_ns &&
+              speed_mps <= ClosingFingers::kPalmMps);
+    }
   };
   /// What began and ended is added to `events`. One thread.
   void update(const Moment& moment, const HandFrame& hand, const GestureOptions& options,

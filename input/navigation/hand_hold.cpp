@@ -11,6 +11,8 @@ namespace {
 constexpr double kPullsRatherThanTurns = 1.5;  // of the way to the side
 constexpr double kPullPerMetre = 7.0;          // logarithm of the zoom: a forearm's way is a factor of 3
 constexpr double kShortestSpanM = 0.02;
+// Of a real hand before a tracker (closing_fingers.h): its palm goes on at .02 to .07 m/s when the fingers are there.
+constexpr double kCreepMps = 0.07, kClosingCreepMps = 0.15;
 
 }  // namespace
 
@@ -65,6 +67,12 @@ HandPull HandHold::follow(const Hands& hands, const Mapping& mapping) {
 HandPull HandHold::follow_one(const GestureRecognizer& hand, const Mapping& mapping) {
   HandPull out;
   if (!hand.seen_now()) return out;
+  // The palm creeps on as fingers close round nothing: that is no drag.
+  const double creeps = hand.fingers_close() ? kClosingCreepMps : kCreepMps;
+  if (!past_dead_zone_ && mapping.gestures.grab.still_ns > 0 && glm::length(hand.velocity_mps()) < creeps) {
+    anchor_m_ = hand.position_m();
+    return out;
+  }
   const bool grabs = mode_ == HandMode::kOneGrab, may_pull = grabs && mapping.hands.pull != Action::kNone;
   const glm::dvec3 moved = hand.position_m() - anchor_m_;
   const double sideways = std::hypot(moved.x, moved.y);

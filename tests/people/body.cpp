@@ -12,7 +12,7 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 // Fitts (1954): seconds for a movement = kFittsA + kFittsB * log2(2 D / W); coefficients of free arm movements in the
 // air without a support (Bohan et al. 2003 find slopes of .15 to .25 s a bit for pointing at large displays).
 constexpr double kFittsA_s = 0.12, kFittsB_s = 0.16, kShortest_s = 0.15;
-constexpr double kGripTime_s = 0.28, kPinchTime_s = 0.22;
+constexpr double kPinchTime_s = 0.22;
 constexpr double kRelaxedPinch_m = 0.055;
 
 /// Minimum jerk from 0 to 1.
@@ -104,33 +104,68 @@ double Arm::lower(double t_s) {
   return end;
 }
 
-double Arm::value_at(const std::vector<Change>& changes, double t_s, double rest) {
+const Arm::Change* Arm::change_at(const std::vector<Change>& changes, double t_s) {
   const auto after =
       std::upper_bound(changes.begin(), changes.end(), t_s, [](double t, const Change& c) { return t < c.start_s; });
-  if (after == changes.begin()) return rest;
-  const Change& now = *(after - 1);
-  return now.from + (now.to - now.from) * minimum_jerk((t_s - now.start_s) / (now.end_s - now.start_s));
+  return after == changes.begin() ? nullptr : &*(after - 1);
 }
 
-double Arm::change(std::vector<Change>& changes, double t_s, double to, double seconds, double rest) {
-  const double start = changes.empty() ? t_s : std::max(t_s, changes.back().end_s);
-  changes.push_back({start, start + seconds, value_at(changes, start, rest), to});
-  return start + seconds;
+double Arm::value_at(const std::vector<Change>& changes, double t_s, double rest,
+                     double RecordedFingers::State::*what) {
+  const Change* const now = change_at(changes, t_s);
+  if (now == nullptr) return rest;
+  return now->from + (now->to - now->from) * (now->as->at((t_s - now->start_s) / (now->end_s - now->start_s)).*what);
+}
+
+glm::dvec3 Arm::palm_at(double t_s) const {
+  const Change* const now = change_at(grips_, t_s);
+  if (now == nullptr) return glm::dvec3(0.0);
+  const double part = (t_s - now->start_s) / (now->end_s - now->start_s);
+  glm::dvec3 went = body_.size * std::abs(now->to - now->from) * now->as->at(part).went_m;
+  if (left_) went.x = -went.x;
+  return (1.0 - std::clamp(part, 0.0, 1.0)) * now->palm_m + went;
+}
+
+const RecordedFingers& Arm::some_fingers(bool close) {
+  std::vector<const RecordedFingers*> fit;
+  for (const RecordedFingers& each : recorded_fingers())
+    if ((each.kind == RecordedFingers::kCloses) == close) fit.push_back(&each);
+  const auto drawn = static_cast<std::size_t>(random_.uniform(0.0, static_cast<double>(fit.size())));
+  return *fit[std::min(drawn, fit.size() - 1)];
 }
 
 double Arm::grip(double t_s, double effort) {
-  const double to = body_.relaxed_grab + (body_.closed_grab - body_.relaxed_grab) * effort;
-  pinch(t_s, std::max(0.015, kRelaxedPinch_m * body_.size * (1.0 - 0.7 * to)));
-  return change(grips_, t_s, std::clamp(to + 0.03 * random_.normal(), 0.0, 1.0),
-                kGripTime_s * random_.uniform(0.7, 1.4) / body_.swiftness, body_.relaxed_grab);
+  const double to = std::clamp(
+      body_.relaxed_grab + (body_.closed_grab - body_.relaxed_grab) * effort + 0.03 * random_.normal(), 0.0, 1.0);
+  const double start = grips_.empty() ? t_s : std::max(t_s, grips_.back().end_s);
+  const double from = value_at(grips_, start, body_.relaxed_grab, &RecordedFingers::State::grab);
+  const RecordedFingers& as = some_fingers(to > from);
+  const double seconds = as.there_s * random_.uniform(0.7, 1.4) / body_.swiftness;
+  // the same movement brings the thumb to the index finger
+  const double pinch_to = std::max(0.015, kRelaxedPinch_m * body_.size * (1.0 - 0.7 * to));
+  const double pinch_from = value_at(pinches_, start, kRelaxedPinch_m * body_.size, &RecordedFingers::State::pinch);
+  pinches_.push_back({start, start + seconds, pinch_from, pinch_to, &as, glm::dvec3(0.0)});
+  grips_.push_back({start, start + seconds, from, to, &as, palm_at(start)});
+  return start + seconds;
 }
 
 double Arm::pinch(double t_s, double distance_m) {
-  return change(pinches_, t_s, distance_m, kPinchTime_s * random_.uniform(0.8, 1.4) / body_.swiftness,
-                kRelaxedPinch_m * body_.size);
+  const double start = pinches_.empty() ? t_s : std::max(t_s, pinches_.back().end_s);
+  const double from = value_at(pinches_, start, kRelaxedPinch_m * body_.size, &RecordedFingers::State::pinch);
+  const double end = start + kPinchTime_s * random_.uniform(0.8, 1.4) / body_.swiftness;
+  pinches_.push_back({start, end, from, distance_m, &some_fingers(distance_m < from), glm::dvec3(0.0)});
+  return end;
 }
 
-void Arm::point(double t_s, bool stretched) { change(bends_, t_s, stretched ? 0.0 : 1.0, kPinchTime_s, 1.0); }
+void Arm::point(double t_s, bool stretched) { bends_.emplace_back(t_s, stretched); }
+
+double Arm::bent_at(double t_s) const {
+  const auto after = std::upper_bound(bends_.begin(), bends_.end(), t_s,
+                                      [](double t, const std::pair<double, bool>& bend) { return t < bend.first; });
+  if (after == bends_.begin()) return 1.0;
+  const double moved = minimum_jerk((t_s - (after - 1)->first) / kPinchTime_s);
+  return (after - 1)->second ? 1.0 - moved : moved;
+}
 
 const Arm::Stroke* Arm::stroke_at(double t_s) const {
   const auto after = std::upper_bound(strokes_.begin(), strokes_.end(), t_s,
@@ -152,16 +187,16 @@ std::optional<HandAsItIs> Arm::at(double t_s) const {
   if (now == nullptr || !now->visible) return std::nullopt;
   HandAsItIs hand;
   glm::dvec3& at = hand.palm.position_m;
-  at = steady_at(t_s);
+  at = steady_at(t_s) + palm_at(t_s);
   const double angle = kTwoPi * body_.tremor_hz * t_s + phase_;
   at += body_.tremor_m * glm::dvec3(std::sin(angle), std::sin(1.13 * angle + 1.0), std::sin(0.87 * angle + 2.0));
   // the fingers go on where the arm points, bent half way back to the screen's normal by the wrist
   const glm::dvec3 arm = at - shoulder_m(body_, left_);
   const double yaw = -0.6 * std::atan2(arm.x, -arm.z), pitch = 0.4 * std::atan2(arm.y, std::hypot(arm.x, arm.z));
   hand.palm.rotation = glm::angleAxis(yaw, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch, glm::dvec3(1, 0, 0));
-  hand.grab = value_at(grips_, t_s, body_.relaxed_grab);
-  hand.index = hand.grab * value_at(bends_, t_s, 1.0);
-  hand.pinch_m = value_at(pinches_, t_s, kRelaxedPinch_m * body_.size);
+  hand.grab = std::clamp(value_at(grips_, t_s, body_.relaxed_grab, &RecordedFingers::State::grab), 0.0, 1.0);
+  hand.index = hand.grab * bent_at(t_s);
+  hand.pinch_m = value_at(pinches_, t_s, kRelaxedPinch_m * body_.size, &RecordedFingers::State::pinch);
   return hand;
 }
 

@@ -1,13 +1,15 @@
 #pragma once
-// How people's arms and hands move, whoever watches them: reach, bows of a movement, tremor, fatigue, grip. Nothing
-// here knows how gestures are recognised.
+// How people's arms and hands move, whoever watches them: reach, bows of a movement, tremor, fatigue; fingers as a real
+// hand closed and opened them. Nothing here knows how gestures are recognised.
 
 #include <glm/vec3.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/numbers/pose.h"
 #include "input/simulated/script.h"
+#include "tests/people/recorded_hands.h"
 
 namespace dubsar {
 
@@ -74,19 +76,26 @@ class Arm {
   };
   struct Change {
     double start_s, end_s, from, to;
+    const RecordedFingers* as;  ///< how a real hand did it
+    glm::dvec3 palm_m;          ///< where the change before left the palm, beside where the arm holds it
   };
   double stroke(double t_s, const glm::dvec3& to_m, double seconds, bool visible);
   const Stroke* stroke_at(double t_s) const;
   glm::dvec3 steady_at(double t_s) const;  ///< without tremor
-  static double value_at(const std::vector<Change>& changes, double t_s, double rest);
-  static double change(std::vector<Change>& changes, double t_s, double to, double seconds, double rest);
+  static const Change* change_at(const std::vector<Change>& changes, double t_s);
+  static double value_at(const std::vector<Change>& changes, double t_s, double rest,
+                         double RecordedFingers::State::*what);
+  double bent_at(double t_s) const;      ///< the index finger, of what the hand is
+  glm::dvec3 palm_at(double t_s) const;  ///< what closing fingers do to the palm
+  const RecordedFingers& some_fingers(bool close);
 
   Body body_;
   bool left_, up_ = false;
   ScriptRandom random_;
   double phase_;
   std::vector<Stroke> strokes_;
-  std::vector<Change> grips_, pinches_, bends_;
+  std::vector<Change> grips_, pinches_;
+  std::vector<std::pair<double, bool>> bends_;  ///< from when on the index finger is stretched, or not
 };
 
 }  // namespace dubsar

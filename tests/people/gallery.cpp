@@ -117,6 +117,7 @@ struct Gallery::Parts {
         blind(given.sun ? 0.05 : 0.0, 0.2, 1.5, given.seed + 17),
         ghost(given.reflections ? 0.2 : 0.0, 0.05, 0.4, given.seed + 19) {
     rate_hz = random.uniform(60.0, 115.0);
+    if (given.rate_hz > 0.0) rate_hz = given.rate_hz;
     late_s = random.uniform(0.01, 0.035);
     noise_m = 0.001 * random.uniform(0.4, 1.6);
     for (std::uint32_t i = 0; i < 2; ++i) hands.emplace_back(1 + i * kIdsOfOne / 2, visitor.body(), given.seed * 5 + i);

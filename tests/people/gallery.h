@@ -18,6 +18,7 @@ struct GalleryOptions {
   bool camera = true;        ///< heads are seen too
   bool sun = false;          ///< at times it blinds the tracker
   bool reflections = false;  ///< things that look like hands for a moment
+  double rate_hz = 0.0;      ///< of the hand tracker; 0: 60 to 115, as they come
 };
 /// A room as they come: crowds of up to four, a camera in half of them, sun in a fifth, reflections in a seventh.
 GalleryOptions draw_gallery(NaiveKind kind, std::uint64_t seed);

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <numbers>
 #include <utility>
 
@@ -27,7 +30,7 @@ struct Panel {
   }
 };
 
-TEST(Signs, StandApartWithinThePanelAndCanBeHitByAHandThatTrembles) {
+TEST(DwellButtons, StandApartWithinThePanelAndCanBeHitByAHandThatTrembles) {
   for (const double aspect : {0.5625, 0.75, 1.0, 1.78, 2.4}) {
     const auto buttons = place_buttons(std::array{DwellButton::kOpen, DwellButton::kClose, DwellButton::kTour}, aspect);
     for (const DwellButtonPicture& button : buttons) {
@@ -36,11 +39,28 @@ TEST(Signs, StandApartWithinThePanelAndCanBeHitByAHandThatTrembles) {
       EXPECT_GE(button.radius, 0.07) << aspect;  // a trembling hand's ring moves by a hundredth of the height
     }
     for (std::size_t i = 1; i < buttons.size(); ++i)
-      EXPECT_GT(buttons[i - 1].at.y - buttons[i].at.y, 2.0 * buttons[i].radius) << aspect;
+      EXPECT_GT(glm::length(glm::dvec2(aspect, 1.0) * (buttons[i - 1].at - buttons[i].at)), 2.0 * buttons[i].radius)
+          << aspect;
   }
 }
 
-TEST(Signs, ARestChoosesOnceAndNothingElseUntilTheHandHasLeft) {
+/// The object is at most as high and wide as what gallery_room() leaves, in the panel's middle.
+TEST(DwellButtons, StandBesideTheObjectOnEveryShapeOfPanel) {
+  constexpr double kMargin = 0.08;  // of the stage, where neither words nor buttons need more
+  for (const double aspect : {0.5, 0.5625, 0.75, 0.99, 1.0, 1.25, 1.6, 1.78, 2.4}) {
+    const GalleryRoom room = gallery_room(aspect);
+    const double half = std::min((0.5 - std::max(kMargin, room.sides)) * aspect, 0.5 - std::max(kMargin, room.words));
+    EXPECT_GT(half, 0.12) << aspect;
+    for (const DwellButtonPicture& button :
+         place_buttons(std::array{DwellButton::kOpen, DwellButton::kTour, DwellButton::kLeave}, aspect)) {
+      const glm::dvec2 at(button.at.x * aspect, button.at.y);
+      const glm::dvec2 nearest = glm::clamp(at, glm::dvec2(-half), glm::dvec2(half));
+      EXPECT_GT(glm::length(at - nearest), button.radius) << aspect;
+    }
+  }
+}
+
+TEST(DwellButtons, ARestChoosesOnceAndNothingElseUntilTheHandHasLeft) {
   Panel panel;
   const DwellHand on{panel.buttons[0].at}, off{{0.0, 0.0}};
   panel.go_on(1.0, {on});
@@ -58,7 +78,7 @@ TEST(Signs, ARestChoosesOnceAndNothingElseUntilTheHandHasLeft) {
   EXPECT_EQ(panel.chosen[1], DwellButton::kTour);
 }
 
-TEST(Signs, WhatEndsThereByChanceChoosesNothing) {
+TEST(DwellButtons, WhatEndsThereByChanceChoosesNothing) {
   Panel panel;
   const DwellHand on{panel.buttons[0].at}, holds{panel.buttons[0].at, false};
   panel.go_on(1.0, {holds});  // it carried the object here, and lets go
@@ -74,7 +94,7 @@ TEST(Signs, WhatEndsThereByChanceChoosesNothing) {
   EXPECT_TRUE(panel.chosen.empty());
 }
 
-TEST(Signs, AHandThatSinksFromAChosenSignToTheNextChoosesNothing) {
+TEST(DwellButtons, AHandThatSinksFromAChosenSignToTheNextChoosesNothing) {
   Panel panel;
   panel.go_on(2.5, {DwellHand{panel.buttons[0].at}});
   ASSERT_EQ(panel.chosen.size(), 1U);
@@ -88,7 +108,7 @@ TEST(Signs, AHandThatSinksFromAChosenSignToTheNextChoosesNothing) {
   EXPECT_EQ(panel.chosen.size(), 2U);
 }
 
-TEST(Signs, ATrembleOverTheEdgeAndAHandThatIsLostForAMomentBreakNoRest) {
+TEST(DwellButtons, ATrembleOverTheEdgeAndAHandThatIsLostForAMomentBreakNoRest) {
   Panel panel;
   const double edge = panel.buttons[0].radius / kAspect;
   for (int i = 0; i < 60 && panel.chosen.empty(); ++i) {

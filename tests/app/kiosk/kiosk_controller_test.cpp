@@ -162,7 +162,7 @@ TEST(KioskController, TheOperatorsPageSaysHowThingsStandAndMakesThePanelBrighter
   for (const std::string& row : later.picture->menu) page += row + "\n";
   for (const std::string& said : std::vector<std::string>{
            "object 1 of 2, language de, brightness 60 %", "visits today: 1; dark 18:00-09:30", "touch: works\n",
-           "leap: no such device is plugged in\n", "12:00 leap: no such device is plugged in\n", "-  darker\n"})
+           "leap: lost, no such device is plugged in\n", "12:00 leap: no such device is plugged in\n", "-  darker\n"})
     EXPECT_NE(page.find(said), std::string::npos) << said << " in\n" << page;
   EXPECT_NEAR(kiosk.go_on(0.1).picture->dark, 0.4, 1e-6);
 }

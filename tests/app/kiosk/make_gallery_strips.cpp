@@ -1,10 +1,12 @@
 // make_gallery_strips SURFACE SCRIPT FOLDER: a visit to the kiosk as strips of the documentation, on a flat panel, for
-// red and cyan glasses, and as a quilt. `./do strips gallery` runs it.
+// red and cyan glasses, and as a quilt; and the tour that a sealed tablet has. `./do strips gallery` runs it.
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
+#include <span>
 
 #include "app/cli/mesh_input.h"
 #include "app/kiosk/kiosk_controller.h"
@@ -35,6 +37,7 @@ Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script,
   screen.height_px = screen.window_h = height;
   screen.height_mm = screen.width_mm * height / width;
   options.stage.samples = 2;
+  options.stage.room.gallery = true;
   options.inputs = {"scripted:path=" + script};
   options.around.notices = false;
   options.work.upright = true;
@@ -66,9 +69,90 @@ Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script,
   return out;
 }
 
+/// Nobody is there; the tour is asked for as a finger on its button would.
+class TourStarter final : public SessionGuide {
+ public:
+  explicit TourStarter(KioskController& kiosk) : kiosk_(kiosk) {}
+  bool takes(const InputEvent& event, TimestampNs now) override { return kiosk_.takes(event, now); }
+  void presented(TimestampNs now) override { kiosk_.presented(now); }
+  Guidance lead(const GuideMoment& moment) override {
+    Guidance out = kiosk_.lead(moment);
+    for (const DwellButtonPicture& button : out.picture ? out.picture->buttons : std::vector<DwellButtonPicture>()) {
+      if (button.button != DwellButton::kTour || began_ >= 0 || !moment.steered.hands.empty()) continue;
+      InputEvent event;
+      event.kind = EventKind::kButton;
+      event.down = true;
+      event.at = button.at * glm::dvec2(moment.window_mm.x / moment.window_mm.y, 1.0);
+      kiosk_.takes(event, moment.now);
+      began_ = moment.now;
+    }
+    since_s_ = began_ < 0 ? -1.0 : 1e-9 * static_cast<double>(moment.now - began_);
+    return out;
+  }
+  double since_s() const noexcept { return since_s_; }  ///< of the tour; below 0: not yet
+
+ private:
+  KioskController& kiosk_;
+  TimestampNs began_ = -1;
+  double since_s_ = -1.0;
+};
+
+/// Pictures of the tour that a sealed tablet has, at these seconds of it.
+Result<std::vector<Image>> tour(const TriMesh& mesh, const std::string& script, std::span<const double> moments,
+                                int width, int height) {
+  ViewOptions options;
+  DUBSAR_ASSIGN(options.mapping, gallery_mapping());
+  DUBSAR_ASSIGN(options.stage.shading, shading_preset("relief"));
+  Screen& screen = options.stage.screen;
+  screen.width_px = screen.window_w = width;
+  screen.height_px = screen.window_h = height;
+  screen.height_mm = screen.width_mm * height / width;
+  options.stage.samples = 2;
+  options.stage.room.gallery = true;
+  options.inputs = {"scripted:path=" + script};
+  options.around.notices = false;
+  options.work.upright = true;
+  options.time.fps = 5.0;
+  options.time.longest_s = 20.0 + moments.back();
+  options.files.every = 5;
+  KioskParts parts;
+  parts.profile.objects = {{.file = "tablet", .title = {{"en", "A sealed contract"}}}};
+  parts.profile.pin = "90210735";
+  parts.zone = {1e-3 * options.mapping.hands.zone_min_mm, 1e-3 * options.mapping.hands.zone_max_mm};
+  parts.wall = [] { return WallTime{1'790'000'000, 720}; };
+  KioskController guide(std::move(parts));
+  TourStarter starter(guide);
+  options.guide = &starter;
+  SilentProgress progress;
+  std::vector<Image> out;
+  Result<void> read;
+  DUBSAR_TRY(run_view(mesh, options, progress, [&](const ViewMoment& moment) {
+    if (!moment.drawn || out.size() == moments.size() || starter.since_s() < moments[out.size()]) return;
+    auto picture = moment.presenter.picture();
+    if (picture)
+      out.push_back(*std::move(picture));
+    else
+      read = tl::unexpected<Error>(picture.error());
+  }));
+  DUBSAR_TRY(read);
+  return out;
+}
+
+/// Its five steps, and the envelope going in six.
+Result<void> make_tour(const TriMesh& mesh, const std::string& script, const std::string& folder) {
+  constexpr std::array<double, 6> kSteps{6.0, 15.0, 31.0, 41.0, 46.0, 61.0}, kPeel{26.5, 29.0, 30.5, 32.0, 33.5, 37.0};
+  std::vector<std::vector<Image>> rows(2);
+  DUBSAR_ASSIGN(const auto steps, tour(mesh, script, kSteps, 960, 540));
+  DUBSAR_ASSIGN(const auto peel, tour(mesh, script, kPeel, 960, 540));
+  for (const Image& picture : steps) rows[0].push_back(testing::scaled(picture, 320, 180));
+  for (const Image& picture : peel) rows[1].push_back(testing::scaled(picture, 320, 180));
+  return write_png(folder + "/strip_tour.png", testing::sheet(rows));
+}
+
 Result<void> make(const std::string& surface, const std::string& script, const std::string& folder) {
   SilentProgress progress;
   DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({surface, {}, true}, progress));
+  DUBSAR_TRY(make_tour(mesh, (std::filesystem::path(script).parent_path() / "tour.json").string(), folder));
   std::vector<std::vector<Image>> rows(4);
   DUBSAR_ASSIGN(const auto flat, visit(mesh, script, "mono", 800, 600));
   DUBSAR_ASSIGN(const auto red_cyan, visit(mesh, script, "anaglyph", 800, 600));

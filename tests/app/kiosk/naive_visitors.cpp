@@ -1,5 +1,5 @@
-// naive_visitors [SEED [OF_EACH_KIND [why [MAPPING.json]]]]: people who were never told before the kiosk, and its
-// figures.
+// naive_visitors [SEED [OF_EACH_KIND [why] [HZ] [MAPPING.json]]]: people who were never told before the kiosk, and its
+// figures; HZ: of their hand tracker.
 
 #include <fmt/format.h>
 
@@ -18,15 +18,23 @@ int main(int argc, char** argv) {
   using namespace dubsar::app::test;
   const std::uint64_t seed = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
   const int each = argc > 2 ? std::atoi(argv[2]) : 100;
-  const bool why = argc > 3 && std::string_view(argv[3]) == "why";
-  if (argc > 4) {
-    const auto text = read_text_file(argv[4]);
-    const auto mapping = text ? parse_mapping(*text, argv[4]) : Result<Mapping>(tl::unexpected<Error>(text.error()));
-    if (!mapping) {
-      fmt::print(stderr, "{}\n", mapping.error().message);
-      return exit_code(mapping.error().kind);
+  bool why = false;
+  double rate_hz = 0.0;
+  for (int i = 3; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "why") {
+      why = true;
+    } else if (word.ends_with(".json")) {
+      const auto text = read_text_file(argv[i]);
+      const auto mapping = text ? parse_mapping(*text, argv[i]) : Result<Mapping>(tl::unexpected<Error>(text.error()));
+      if (!mapping) {
+        fmt::print(stderr, "{}\n", mapping.error().message);
+        return exit_code(mapping.error().kind);
+      }
+      GallerySession::set_mapping(*mapping);
+    } else {
+      rate_hz = std::atof(argv[i]);
     }
-    GallerySession::set_mapping(*mapping);
   }
   constexpr std::array<std::string_view, 5> kNames{"waves", "pokes", "pushes", "grabs far", "imitates"};
   GalleryFigures all;
@@ -44,7 +52,8 @@ int main(int argc, char** argv) {
   for (std::size_t kind = 0; kind < kNaiveKinds.size(); ++kind) {
     GalleryFigures figures;
     for (int i = 0; i < each; ++i) {
-      const auto one = draw_gallery(kNaiveKinds[kind], seed + 1000 * kind + static_cast<unsigned>(i));
+      auto one = draw_gallery(kNaiveKinds[kind], seed + 1000 * kind + static_cast<unsigned>(i));
+      one.rate_hz = rate_hz;
       const GalleryVisit seen = visit(one);
       figures.add(seen);
       all.add(seen);

@@ -72,7 +72,7 @@ TEST(Tour, WhatIsWrongIsSaidInOneSentenceThatNamesTheStep) {
             "t.json: steps[0]: keyframes[1].camera: \"zom\" is unknown, expected one of: rotation_wxyz, zoom, pan");
   EXPECT_EQ(with("/steps/0/keyframes", json::array()), "t.json: steps[0]: no keyframe found, expected at least one");
   EXPECT_EQ(with("/steps/0/titel", "x"),
-            "t.json: steps[0]: \"titel\" is unknown, expected one of: title, text, labels, stays_s, keyframes");
+            "t.json: steps[0]: \"titel\" is unknown, expected one of: title, text, labels, stays_s, says_s, keyframes");
   EXPECT_EQ(with("/steps/0/labels/0/at_mm", {1, 2}), "t.json: steps[0]: labels[0]: \"at_mm\" is no list of 3 numbers");
   EXPECT_EQ(with("/steps/0/title", 7), "t.json: steps[0]: \"title\" is neither a text nor texts by language");
   EXPECT_EQ(with("/version", 2), "t.json: version 2 found, expected 1; a newer dubsar may have written it");

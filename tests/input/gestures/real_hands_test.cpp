@@ -142,13 +142,15 @@ TEST_F(RealHands, SpeedGoesWithWhatTheTrackerSaidOfItWhateverTheRate) {
     }
 }
 
+/// Its palm goes by 18 to 45 mm as the fingers close, at up to .24 m/s.
 TEST_F(RealHands, TheHandThatClosesTwiceGrabsTwiceWhateverTheRate) {
-  for (const std::size_t every : kEvery) {
-    const auto events = events_of(grab_, Chirality::kRight, every, default_mapping().value().gestures);
-    EXPECT_EQ(count(events, GestureKind::kGrab, GesturePhase::kBegin), 2) << "each " << every;
-    EXPECT_EQ(count(events, GestureKind::kGrab, GesturePhase::kEnd), 2) << "each " << every;
-    EXPECT_EQ(count(events, GestureKind::kSwipe, GesturePhase::kDone), 0) << "each " << every;
-  }
+  for (const auto& options : {default_mapping().value().gestures, gallery_mapping().value().gestures})
+    for (const std::size_t every : kEvery) {
+      const auto events = events_of(grab_, Chirality::kRight, every, options);
+      EXPECT_EQ(count(events, GestureKind::kGrab, GesturePhase::kBegin), 2) << "each " << every;
+      EXPECT_EQ(count(events, GestureKind::kGrab, GesturePhase::kEnd), 2) << "each " << every;
+      EXPECT_EQ(count(events, GestureKind::kSwipe, GesturePhase::kDone), 0) << "each " << every;
+    }
 }
 
 TEST_F(RealHands, WhoClapsOrFlapsDoesNotSwipe) {
