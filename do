@@ -41,6 +41,7 @@ usage() {
               ./do bench ablation [--size XxYxZ] [--seed N] [--seeds COUNT]: what each rule of the contact is worth, with the spread
               ./do bench invariance [--seeds N]: the same object cropped, mirrored, with axes exchanged: how far answers lie apart
               ./do bench script [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS]: wedges that are found and drawn, beside what was pressed
+              ./do bench seals [--size XxYxZ] [--seed N] [--seeds COUNT] [--lost SHARE]: the average of three impressions, beside the best of them
               ./do bench crossings FILE.exa...: pairs of triangles that cross or touch, partition by partition
               ./do bench wedges --scanner [--size XxYxZ] [--seed N] [--seeds COUNT]: the same of scans with an X-ray scanner's artefacts
               ./do bench light: from the start of a kiosk to its first picture, 1.6 million vertices on 48 views
@@ -298,9 +299,9 @@ bench() {
     "$build/tests/bench/ablation_bench" "${@:2}"
     return
   fi
-  if [ "${1:-}" = script ]; then
-    build_target --target script_bench
-    "$build/tests/bench/script_bench" "${@:2}"
+  if [ "${1:-}" = script ] || [ "${1:-}" = seals ]; then
+    build_target --target "$1_bench"
+    "$build/tests/bench/$1_bench" "${@:2}"
     return
   fi
   if [ "${1:-}" = crossings ]; then

@@ -16,6 +16,6 @@ int main(int argc, char** argv) {
   return run_program(
       program,
       {add_phantom_verb(program), add_process_verb(program), add_info_verb(program), add_exa_verb(program),
-       add_wedges_verb(program), add_handcopy_verb(program), add_compare_verb(program)},
+       add_wedges_verb(program), add_handcopy_verb(program), add_seal_verb(program), add_compare_verb(program)},
       argc, argv);
 }

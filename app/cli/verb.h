@@ -42,6 +42,7 @@ Verb add_compare_verb(Arguments program);
 Verb add_kiosk_verb(Arguments program);
 Verb add_wedges_verb(Arguments program);
 Verb add_handcopy_verb(Arguments program);
+Verb add_seal_verb(Arguments program);
 Verb add_exa_verb(Arguments program);
 Verb add_export_verb(Arguments program);
 Verb add_fatcross_verb(Arguments program);

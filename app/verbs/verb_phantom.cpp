@@ -64,6 +64,7 @@ Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
   wanted.blur_vox = model.blur_vox;
   wanted.artefacts = model.artefacts;
   wanted.writing.written = !options.unwritten;
+  wanted.writing.seals_lost = model.writing.seals_lost;
   if (options.scanned) {
     if (options.recipe)
       return fail(
@@ -143,6 +144,10 @@ Verb add_phantom_verb(Arguments program) {
   contact.value("--wedge-depth", model.wedge_depth_vox, "depth of a usual wedge in voxels (default 7, or 0.45 mm)")
       .range(2.0, 64.0);
   contact.flag("--unwritten", options->unwritten, "nobody wrote on the tablet");
+  contact
+      .value("--seals-lost", model.writing.seals_lost,
+             "share of each impression of the seal on the envelope that is worn or broken away")
+      .range(0.0, 0.9);
   contact.value("--envelope-density", model.envelope_density, "of its clay, relative to the tablet's").range(0.5, 1.5);
   contact.value("--rings", model.rings, "ring artefacts: standard deviation relative to clay").range(0.0, 1.0);
   contact.value("--cupping", model.artefacts.cupping, "how much less clay counts at the axis of rotation, share")

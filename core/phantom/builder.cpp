@@ -30,6 +30,7 @@ std::unique_ptr<const Phantom> PhantomBuilder::build(const PhantomOptions& optio
   builder.measure_glue();
   if (phantom->options_.writing.written) builder.write_tablet();
   builder.write_envelope();
+  if (phantom->options_.writing.seals_lost > 0.0) builder.wear_sealings();
   builder.index_wedges();
   builder.crack_envelope();
   builder.fill_clay();

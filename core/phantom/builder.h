@@ -21,6 +21,7 @@ class PhantomBuilder {
   void index_wedges();
   void fill_clay();
   void crack_envelope();
+  void wear_sealings();  // sealings.cpp
   // text_layout.cpp: writing
   void write_tablet();
   void write_envelope();

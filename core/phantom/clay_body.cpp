@@ -7,6 +7,9 @@ namespace {
 // smooth and the same on every machine, not sines.
 constexpr float kSine[3] = {6.2832f, -40.33f, 60.79f};
 
+// Edges of lost patches are half a millimetre wide where patches are some 5 mm large; SealLoss says what is rough.
+constexpr float kLossRamp = 0.25f, kRoughFloor = 1.0f / 7.0f;
+
 Dual coordinate(const Point& point, SignedAxis axis) { return point[axis.axis] * axis.sign; }
 
 }  // namespace
@@ -68,12 +71,24 @@ Dual ClayBody::evaluate(const Point& point, Dual* decor, float range) const {
   return body;
 }
 
-Dual ClayBody::decorate(const Point& point, const Dual& slab, const Faces& faces) const {
-  // The side that owns the point: ruling and sealing fade out where the edges round off, so that no two sides mix.
-  std::size_t axis = 0;
+Dual ClayBody::owned(const Dual& slab, const Faces& faces, std::size_t& axis) const {
+  axis = 0;
   for (std::size_t a = 1; a < 3; ++a)
     if (faces.distance[a].v > faces.distance[axis].v) axis = a;
-  const Dual mask = smooth_step(faces.distance[axis] - slab, -0.27f * edge_radius, -0.03f * edge_radius);
+  return smooth_step(faces.distance[axis] - slab, -0.27f * edge_radius, -0.03f * edge_radius);
+}
+
+float ClayBody::decor_share(Side side, const Point& point) const {
+  Faces faces;
+  const Dual slab = pillow(point, faces);
+  std::size_t axis = 0;
+  const Dual mask = owned(slab, faces, axis);
+  return faces.side[axis] == side ? mask.v : 0.0f;
+}
+
+Dual ClayBody::decorate(const Point& point, const Dual& slab, const Faces& faces) const {
+  std::size_t axis = 0;
+  const Dual mask = owned(slab, faces, axis);
   if (mask.v <= 0.0f) return {};
   const auto side = static_cast<std::size_t>(faces.side[axis]);
   const SideFrame& frame = kSideFrames[side];
@@ -98,7 +113,14 @@ Dual ClayBody::decorate(const Point& point, const Dual& slab, const Faces& faces
       if (y.v <= -0.8f || y.v >= SealRelief::kHeightMm + 0.8f) continue;
       const Dual inside =
           smooth_step(y, -0.8f, 0.4f) * smooth_step(-y, -SealRelief::kHeightMm - 0.8f, -SealRelief::kHeightMm + 0.4f);
-      decor = decor + inside * band_depth - seal->height(x, y) * voxels_per_mm;
+      Dual raised = seal->height(x, y) * voxels_per_mm;
+      if (band.lost_above < 1e30f) {
+        const Dual lost = smooth_step(loss.where.evaluate(point) - band.lost_above, 0.0f, kLossRamp);
+        const Dual broken = smooth_step(loss.kind.evaluate(point), 0.0f, kLossRamp) * loss.depth *
+                            (loss.floor.evaluate(point) * kRoughFloor + 1.0f);
+        raised = raised - lost * (raised + broken * inside);
+      }
+      decor = decor + inside * band_depth - raised;
     }
   return decor * mask;
 }

@@ -35,6 +35,13 @@ class Waves {
 struct SealBand {
   float bottom = 0.0f;  ///< lower border, voxels along `up`
   float phase_mm = 0.0f;
+  float lost_above = 1e30f;  ///< where SealLoss::where exceeds it nothing is left of the impression
+};
+
+/// What became of sealings later: in patches they are worn down to their ground, or clay broke away from below them.
+struct SealLoss {
+  Waves where, kind, floor;  ///< of deviation 1; kind > 0: broken
+  float depth = 0.0f;        ///< of what broke away, voxels below the ground; its floor is rough by a seventh of that
 };
 
 /// Horizontal ruled lines on one side at first + k * pitch, k = 0 .. count - 1, voxels along `up`.
@@ -61,6 +68,7 @@ struct ClayBody {
   const SealRelief* seal = nullptr;
   float voxels_per_mm = 1.0f;
   float band_depth = 0.0f;
+  SealLoss loss;
 
   /// The slab before anybody wrote on it: metric to first order after division by its gradient.
   Dual smooth(const Point& point) const { return evaluate(point, nullptr, 0.0f); }
@@ -70,6 +78,8 @@ struct ClayBody {
 
   /// The point of the smooth surface that is seen along the normal of `side` at (right, up).
   Float4 surface_point(Side side, float right, float up) const;
+  /// Of what was ruled or sealed on `side`, the share that the edges' rounding leaves at a point near the surface.
+  float decor_share(Side side, const Point& point) const;
 
  private:
   struct Faces {
@@ -77,6 +87,9 @@ struct ClayBody {
     std::array<Side, 3> side;
   };
   Dual pillow(const Point& point, Faces& faces) const;
+  /// The axis whose side owns the point, and how much of it: ruling and sealing fade out where the edges round off, so
+  /// that no two sides mix.
+  Dual owned(const Dual& slab, const Faces& faces, std::size_t& axis) const;
   Dual decorate(const Point& point, const Dual& body, const Faces& faces) const;
 };
 

@@ -53,6 +53,7 @@ Result<PhantomOptions> complete(PhantomOptions options) {
         Limit{"gap", options.gap_vox, 1.0, 64.0, true},
         Limit{"depth of wedges", options.wedge_depth_vox, 2.0, 64.0, true},
         Limit{"pushed clay", options.writing.pushed, 0.0, 0.5, true},
+        Limit{"lost share of sealings", options.writing.seals_lost, 0.0, 0.9, true},
         Limit{"density of the envelope", options.envelope_density, 0.5, 1.5, false},
         Limit{"rings", options.rings, 0.0, 1.0, true}, Limit{"blur", options.blur_vox, 0.3, 1.1, false},
         Limit{"cupping", options.artefacts.cupping, 0.0, 0.5, true},

@@ -6,6 +6,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -68,6 +69,19 @@ struct Wedge {
   bool has_air() const noexcept { return state != WedgeCase::kFilled; }
 };
 
+/// A band of the envelope that the seal was rolled along, in input voxel coordinates.
+struct Sealing {
+  Side side = Side::kObverse;
+  glm::dvec3 from{0.0},
+      to{0.0};  ///< ends of its middle line, where it is whole; on the surface before anything was pressed
+};
+/// Where a point lies in the seal's impression.
+struct SealPlace {
+  double x_mm = 0.0, y_mm = 0.0;  ///< along the rolling, from 0 to SealRelief::kTurnMm, and across
+  double height_mm = 0.0;         ///< of the impression over its ground there, as the seal was cut
+  bool shown = true;              ///< whole: not worn, not broken away, not rounded away with an edge
+};
+
 /// Fields at a point, in voxels, negative inside; metric to first order after division by their gradients near their
 /// zero. Farther from it than the `reach` they were asked for they keep their sign, and are only known to be beyond it.
 struct Fields {
@@ -94,6 +108,10 @@ class Phantom {
   bool overlap(std::size_t first, std::size_t second) const;
   /// Part of the tablet's surface where there is no air between it and the envelope, or a film of it, 0..1.
   double glued_fraction() const noexcept { return glued_fraction_; }
+  /// Of the envelope: obverse (above, below), reverse, upper edge, left edge.
+  std::vector<Sealing> sealings() const;
+  /// Of a point of the surface in the `sealing`-th band, within its height.
+  std::optional<SealPlace> seal_place(std::size_t sealing, const glm::dvec3& point) const;
   bool cracked() const noexcept { return crack_.radius2 > 0.0f; }
   int pore_count() const noexcept { return static_cast<int>(pores_.all.size()); }
 

@@ -7,7 +7,7 @@
 
 #include "app/cli/default_output.h"
 #include "app/cli/verb.h"
-#include "app/verbs/script_request.h"
+#include "app/verbs/edition/script_request.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/files/file_suffix.h"
 #include "core/script/wedge_table.h"

@@ -1,4 +1,4 @@
-#include "app/verbs/script_request.h"
+#include "app/verbs/edition/script_request.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,222 @@
+#include "core/seals/seal_average.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+
+namespace dubsar {
+namespace {
+
+constexpr int kPlacingRounds = 2;
+constexpr int kWeightRounds = 3;
+constexpr double kAgreeMm = 0.8;              // deviation of the window in which impressions are compared: a limb
+constexpr double kLooseSquare = 0.05 * 0.05;  // mm2, as the loss of refined()
+constexpr double kTurnOffMm = 0.8, kTurnStepMm = 0.1;  // the search has cells of .4 mm
+constexpr double kWornShare = 0.15;  // of the most figures that another impression shows there: it is worn level
+
+/// What one turn of one impression has over the seal's raster.
+struct SealView {
+  std::size_t impression;
+  Impression over;
+};
+
+struct Canvas {
+  int width = 0, height = 0;
+  double step_mm = 1.0, turn_mm = 0.0;
+  glm::dvec2 least{0.0};
+  std::size_t cells() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+
+Canvas canvas_of(const std::vector<Impression>& impressions, const SealPlacing& placing,
+                 const std::vector<std::uint8_t>& used) {
+  Canvas out;
+  out.step_mm = impressions.front().step_mm;
+  out.turn_mm = placing.turn_mm;
+  glm::dvec2 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+  for (std::size_t k = 0; k < impressions.size(); ++k) {
+    if (!used[k]) continue;
+    const glm::dvec2 size = impressions[k].step_mm * glm::dvec2(impressions[k].width - 1, impressions[k].height - 1);
+    for (const glm::dvec2& corner : {glm::dvec2(0.0), glm::dvec2(size.x, 0), glm::dvec2(0, size.y), size}) {
+      low = glm::min(low, placing.seal_from_band[k](corner));
+      high = glm::max(high, placing.seal_from_band[k](corner));
+    }
+  }
+  out.least = low;
+  if (out.turn_mm > 0.0) {
+    out.least.x = 0.0;
+    high.x = out.turn_mm;
+  }
+  out.width =
+      std::max(2, static_cast<int>(std::ceil((high.x - out.least.x) / out.step_mm)) + (out.turn_mm > 0.0 ? 0 : 1));
+  out.height = std::max(2, static_cast<int>((high.y - low.y) / out.step_mm) + 1);
+  return out;
+}
+
+std::vector<SealView> views_of(const std::vector<Impression>& impressions, const SealPlacing& placing,
+                               const std::vector<std::uint8_t>& used, const Canvas& canvas) {
+  std::vector<SealView> out;
+  for (std::size_t k = 0; k < impressions.size(); ++k) {
+    if (!used[k]) continue;
+    const PlacedOn& place = placing.seal_from_band[k];
+    constexpr int kMostTurns = 12;
+    for (int turn = canvas.turn_mm > 0.0 ? -kMostTurns : 0; turn <= (canvas.turn_mm > 0.0 ? kMostTurns : 0); ++turn) {
+      SealView view{k, {canvas.width, canvas.height, canvas.step_mm, {}, {}, {}, {}}};
+      view.over.mm.resize(canvas.cells());
+      view.over.shown.resize(canvas.cells());
+      view.over.figure.resize(canvas.cells());
+      view.over.raised.resize(canvas.cells());
+      bool any = false;
+      for (int y = 0; y < canvas.height; ++y)
+        for (int x = 0; x < canvas.width; ++x) {
+          const glm::dvec2 p =
+              canvas.least + canvas.step_mm * glm::dvec2(x, y) + glm::dvec2(turn * canvas.turn_mm, 0.0);
+          const Sampled s = sampled(impressions[k], place.back(p));
+          if (s.weight <= 0.0) continue;
+          any = true;
+          const std::size_t at = view.over.index(x, y);
+          view.over.mm[at] = static_cast<float>(s.mm);
+          view.over.shown[at] = static_cast<float>(s.weight);
+          view.over.figure[at] = static_cast<float>(s.figure);
+          view.over.raised[at] = static_cast<float>(s.raised);
+        }
+      if (any) out.push_back(std::move(view));
+    }
+  }
+  return out;
+}
+
+/// The mean of all views but those of one impression (`without`; as many as there are: none is left out).
+Impression mean_of(const std::vector<SealView>& views, std::size_t without, const Canvas& canvas,
+                   std::vector<float>* seen_by) {
+  Impression out{canvas.width, canvas.height, canvas.step_mm, {}, {}, {}, {}};
+  for (std::vector<float>* each : {&out.mm, &out.shown, &out.raised, &out.figure}) each->resize(canvas.cells());
+  std::vector<const SealView*> of;
+  for (const SealView& view : views)
+    if (view.impression != without) of.push_back(&view);
+  std::vector<float> most(canvas.cells());  // of figures
+  for (const SealView* view : of)
+    for (std::size_t k = 0; k < most.size(); ++k)
+      if (view->over.shown[k] > 0.3f) most[k] = std::max(most[k], view->over.figure[k]);
+  // Noise has some figures everywhere: their usual least.
+  std::vector<float> level;
+  for (const float figure : most)
+    if (figure > 0.0f) level.push_back(figure);
+  float noise = 1e-6f;
+  if (!level.empty()) {
+    const auto at = level.begin() + static_cast<std::ptrdiff_t>(level.size() / 10);
+    std::nth_element(level.begin(), at, level.end());
+    noise = std::max(noise, 0.3f * *at);
+  }
+  std::vector<std::vector<float>> prior(of.size(), std::vector<float>(canvas.cells())), weight;
+  for (std::size_t v = 0; v < of.size(); ++v)
+    for (std::size_t k = 0; k < most.size(); ++k) {
+      // Nothing raises clay later: what shows more is whole.
+      const float share = (of[v]->over.figure[k] + noise) / (most[k] + noise);
+      prior[v][k] = of[v]->over.shown[k] * share * share;
+    }
+  weight = prior;
+  for (int round = 0; round <= kWeightRounds; ++round) {
+    for (std::size_t k = 0; k < most.size(); ++k) {
+      float sum = 0.0f, all = 0.0f, raised = 0.0f;
+      for (std::size_t v = 0; v < of.size(); ++v) {
+        sum += weight[v][k] * of[v]->over.mm[k];
+        raised += weight[v][k] * of[v]->over.raised[k];
+        all += weight[v][k];
+      }
+      out.mm[k] = all > 0.0f ? sum / all : 0.0f;
+      out.raised[k] = all > 0.0f ? raised / all : 0.0f;
+    }
+    if (round == kWeightRounds) break;
+    for (std::size_t v = 0; v < of.size(); ++v) {
+      std::vector<float> rest2(most.size());
+      for (std::size_t k = 0; k < most.size(); ++k)
+        rest2[k] = (of[v]->over.mm[k] - out.mm[k]) * (of[v]->over.mm[k] - out.mm[k]);
+      const std::vector<float> apart =
+          weighted_blur(rest2, of[v]->over.shown, canvas.width, canvas.height, kAgreeMm / canvas.step_mm);
+      for (std::size_t k = 0; k < most.size(); ++k) {
+        const float t = 1.0f + apart[k] / static_cast<float>(kLooseSquare);
+        weight[v][k] = prior[v][k] / (t * t);
+      }
+    }
+  }
+  if (seen_by) seen_by->assign(canvas.cells(), 0.0f);
+  for (std::size_t k = 0; k < most.size(); ++k)
+    for (std::size_t v = 0; v < of.size(); ++v) {
+      if (of[v]->over.shown[k] < 0.3f) continue;
+      out.shown[k] = std::max(out.shown[k], of[v]->over.shown[k]);
+      out.figure[k] = std::max(out.figure[k], of[v]->over.figure[k]);
+      if (seen_by && of[v]->over.figure[k] + noise >= static_cast<float>(kWornShare) * (most[k] + noise))
+        (*seen_by)[k] += 1.0f;
+    }
+  return out;
+}
+
+/// How well what stands out in one view lies on that of the others.
+double agreement(const std::vector<SealView>& views, const Canvas& canvas) {
+  double out = 0.0;
+  for (std::size_t k = 0; k < canvas.cells(); ++k) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (const SealView& view : views) {
+      if (view.over.shown[k] < 0.5f) continue;
+      const auto raised = static_cast<double>(view.over.raised[k]);
+      sum += raised;
+      squares += raised * raised;
+      count += 1.0;
+    }
+    if (count > 1.0) out += (sum * sum - squares) / (count - 1.0);
+  }
+  return out;
+}
+
+/// The turn at which views agree best, near the one found.
+double finer_turn(const std::vector<Impression>& impressions, SealPlacing placing,
+                  const std::vector<std::uint8_t>& used) {
+  const double turn = placing.turn_mm;
+  double best = turn, most = -1.0;
+  for (double off = -kTurnOffMm; off <= kTurnOffMm + 1e-9; off += kTurnStepMm) {
+    placing.turn_mm = turn + off;
+    const Canvas canvas = canvas_of(impressions, placing, used);
+    const double agree = agreement(views_of(impressions, placing, used, canvas), canvas) * turn / placing.turn_mm;
+    if (agree > most) {
+      most = agree;
+      best = placing.turn_mm;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+SealAverage average_seal(const std::vector<Impression>& impressions, const AverageOptions& options) {
+  SealAverage out;
+  out.placing = place_impressions(impressions, options.first, std::max(options.turn_mm, 0.0));
+  if (options.turn_mm < 0.0) out.placing.turn_mm = out.placing.turn_sure = 0.0;
+  for (std::size_t k = 0; k < impressions.size(); ++k)
+    out.used.push_back(k == out.placing.first || out.placing.likeness[k] > 0.0 ? 1 : 0);
+  for (int round = 0; round <= kPlacingRounds; ++round) {
+    if (out.placing.turn_mm > 0.0 && options.turn_mm == 0.0 && round < 2)
+      out.placing.turn_mm = finer_turn(impressions, out.placing, out.used);
+    const Canvas canvas = canvas_of(impressions, out.placing, out.used);
+    const std::vector<SealView> views = views_of(impressions, out.placing, out.used, canvas);
+    out.least_mm = canvas.least;
+    if (round == kPlacingRounds) {
+      out.relief = mean_of(views, impressions.size(), canvas, &out.seen_by);
+      break;
+    }
+    PlacedOn to_canvas;
+    to_canvas.shift = -canvas.least;
+    PlacedOn from_canvas;
+    from_canvas.shift = canvas.least;
+    const SealPlacing before = out.placing;
+    for (std::size_t k = 0; k < impressions.size(); ++k) {
+      if (!out.used[k] || k == out.placing.first) continue;
+      const Impression others = mean_of(views, k, canvas, nullptr);
+      out.placing.seal_from_band[k] = after(
+          from_canvas, refined(others, impressions[k], after(to_canvas, before.seal_from_band[k]), canvas.turn_mm));
+    }
+  }
+  return out;
+}
+
+}  // namespace dubsar
