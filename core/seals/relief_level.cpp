@@ -106,8 +106,8 @@ std::vector<float> weighted_blur(const std::vector<float>& values, const std::ve
   return sums;
 }
 
-Impression level_impression(const HeightMap& relief) {
-  Impression out{relief.width, relief.height, relief.step_mm, {}, {}, {}, {}};
+SealImpression level_impression(const HeightMap& relief) {
+  SealImpression out{relief.width, relief.height, relief.step_mm, {}, {}, {}, {}};
   const auto blur = [&](const std::vector<float>& values, const std::vector<float>& weights, double mm) {
     return weighted_blur(values, weights, relief.width, relief.height, mm / relief.step_mm);
   };

@@ -8,7 +8,7 @@
 namespace dubsar {
 
 /// One impression, level.
-struct Impression {
+struct SealImpression {
   int width = 0, height = 0;
   double step_mm = 1.0;
   std::vector<float> mm;      ///< over the ground of the band; 0 where nothing is shown
@@ -30,6 +30,6 @@ std::vector<float> weighted_blur(const std::vector<float>& values, const std::ve
 /// broke away leaves nothing. The ground is the band's sheet, and over 3.5 mm what of the surface lies on it (Tukey's
 /// biweight, in rounds, by what figures stand out). What lies lower than that by two fifths of what figures stand out
 /// broke away, and that, with what is within a limb's width of it, is not shown.
-Impression level_impression(const HeightMap& relief);
+SealImpression level_impression(const HeightMap& relief);
 
 }  // namespace dubsar

@@ -18,7 +18,7 @@ constexpr double kWornShare = 0.15;  // of the most figures that another impress
 /// What one turn of one impression has over the seal's raster.
 struct SealView {
   std::size_t impression;
-  Impression over;
+  SealImpression over;
 };
 
 struct Canvas {
@@ -28,7 +28,7 @@ struct Canvas {
   std::size_t cells() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
-Canvas canvas_of(const std::vector<Impression>& impressions, const SealPlacing& placing,
+Canvas canvas_of(const std::vector<SealImpression>& impressions, const SealPlacing& placing,
                  const std::vector<std::uint8_t>& used) {
   Canvas out;
   out.step_mm = impressions.front().step_mm;
@@ -53,7 +53,7 @@ Canvas canvas_of(const std::vector<Impression>& impressions, const SealPlacing& 
   return out;
 }
 
-std::vector<SealView> views_of(const std::vector<Impression>& impressions, const SealPlacing& placing,
+std::vector<SealView> views_of(const std::vector<SealImpression>& impressions, const SealPlacing& placing,
                                const std::vector<std::uint8_t>& used, const Canvas& canvas) {
   std::vector<SealView> out;
   for (std::size_t k = 0; k < impressions.size(); ++k) {
@@ -87,9 +87,9 @@ std::vector<SealView> views_of(const std::vector<Impression>& impressions, const
 }
 
 /// The mean of all views but those of one impression (`without`; as many as there are: none is left out).
-Impression mean_of(const std::vector<SealView>& views, std::size_t without, const Canvas& canvas,
-                   std::vector<float>* seen_by) {
-  Impression out{canvas.width, canvas.height, canvas.step_mm, {}, {}, {}, {}};
+SealImpression mean_of(const std::vector<SealView>& views, std::size_t without, const Canvas& canvas,
+                       std::vector<float>* seen_by) {
+  SealImpression out{canvas.width, canvas.height, canvas.step_mm, {}, {}, {}, {}};
   for (std::vector<float>* each : {&out.mm, &out.shown, &out.raised, &out.figure}) each->resize(canvas.cells());
   std::vector<const SealView*> of;
   for (const SealView& view : views)
@@ -170,7 +170,7 @@ double agreement(const std::vector<SealView>& views, const Canvas& canvas) {
 }
 
 /// The turn at which views agree best, near the one found.
-double finer_turn(const std::vector<Impression>& impressions, SealPlacing placing,
+double finer_turn(const std::vector<SealImpression>& impressions, SealPlacing placing,
                   const std::vector<std::uint8_t>& used) {
   const double turn = placing.turn_mm;
   double best = turn, most = -1.0;
@@ -188,7 +188,7 @@ double finer_turn(const std::vector<Impression>& impressions, SealPlacing placin
 
 }  // namespace
 
-SealAverage average_seal(const std::vector<Impression>& impressions, const AverageOptions& options) {
+SealAverage average_seal(const std::vector<SealImpression>& impressions, const AverageOptions& options) {
   SealAverage out;
   out.placing = place_impressions(impressions, options.first, std::max(options.turn_mm, 0.0));
   if (options.turn_mm < 0.0) out.placing.turn_mm = out.placing.turn_sure = 0.0;
@@ -211,7 +211,7 @@ SealAverage average_seal(const std::vector<Impression>& impressions, const Avera
     const SealPlacing before = out.placing;
     for (std::size_t k = 0; k < impressions.size(); ++k) {
       if (!out.used[k] || k == out.placing.first) continue;
-      const Impression others = mean_of(views, k, canvas, nullptr);
+      const SealImpression others = mean_of(views, k, canvas, nullptr);
       out.placing.seal_from_band[k] = after(
           from_canvas, refined(others, impressions[k], after(to_canvas, before.seal_from_band[k]), canvas.turn_mm));
     }

@@ -8,7 +8,7 @@
 namespace dubsar {
 
 struct SealAverage {
-  Impression relief;               ///< mm over the ground as in the impressions (figures stand out); shown: 0 where no
+  SealImpression relief;           ///< mm over the ground as in the impressions (figures stand out); shown: 0 where no
                                    ///< impression shows anything
   std::vector<float> seen_by;      ///< of each place: how many impressions show it, a turn apart counted as another
   SealPlacing placing;             ///< after the last round
@@ -26,6 +26,6 @@ struct AverageOptions {
 /// contradicts the mean loses its weight (bounded, in rounds). Each impression is then laid anew on the mean of the
 /// others (refined()). Deterministic, the same for any number of threads. kUsage-like conditions are the caller's:
 /// there is at least one impression.
-SealAverage average_seal(const std::vector<Impression>& impressions, const AverageOptions& options = {});
+SealAverage average_seal(const std::vector<SealImpression>& impressions, const AverageOptions& options = {});
 
 }  // namespace dubsar

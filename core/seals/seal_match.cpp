@@ -20,11 +20,11 @@ constexpr double kMostMoveMm = 0.5;     // in one round
 constexpr double kTurnDeg = 2.0;        // the rolling wavers, and people do not draw along it
 
 /// Fewer cells, of what stands out.
-Impression for_search(const Impression& in) {
+SealImpression for_search(const SealImpression& in) {
   std::vector<float> share;
   const std::vector<float> soft =
       weighted_blur(in.raised, in.shown, in.width, in.height, 0.5 * kSearchMm / in.step_mm, &share);
-  Impression out;
+  SealImpression out;
   out.step_mm = kSearchMm;
   out.width = static_cast<int>(in.width * in.step_mm / kSearchMm);
   out.height = static_cast<int>(in.height * in.step_mm / kSearchMm);
@@ -38,7 +38,7 @@ Impression for_search(const Impression& in) {
   return out;
 }
 
-PlacedOn turned_about_middle(const Impression& of, double degrees, bool upside) {
+PlacedOn turned_about_middle(const SealImpression& of, double degrees, bool upside) {
   const double a = degrees * std::numbers::pi / 180.0 + (upside ? std::numbers::pi : 0.0), c = std::cos(a),
                s = std::sin(a);
   PlacedOn out;
@@ -122,8 +122,8 @@ Likeness::At Likeness::near(double shift_mm) const {
   return out;
 }
 
-Likeness likeness_of(const Impression& first_fine, const Impression& second_fine) {
-  const Impression first = for_search(first_fine), second = for_search(second_fine);
+Likeness likeness_of(const SealImpression& first_fine, const SealImpression& second_fine) {
+  const SealImpression first = for_search(first_fine), second = for_search(second_fine);
   Likeness out;
   out.step_mm = kSearchMm;
   out.least_mm = -kSearchMm * (second.width - 1);
@@ -133,7 +133,7 @@ Likeness likeness_of(const Impression& first_fine, const Impression& second_fine
   for (const bool upside : {false, true})
     for (const double degrees : {-kTurnDeg, 0.0, kTurnDeg}) {
       const PlacedOn turn = turned_about_middle(second, degrees, upside);
-      Impression turned = second;
+      SealImpression turned = second;
       for (int y = 0; y < second.height; ++y)
         for (int x = 0; x < second.width; ++x) {
           const Sampled s = sampled(second, turn.back(kSearchMm * glm::dvec2(x, y)));
@@ -174,7 +174,7 @@ Likeness likeness_of(const Impression& first_fine, const Impression& second_fine
   return out;
 }
 
-Sampled sampled(const Impression& of, const glm::dvec2& at_mm) {
+Sampled sampled(const SealImpression& of, const glm::dvec2& at_mm) {
   const double x = at_mm.x / of.step_mm, y = at_mm.y / of.step_mm;
   if (!(x >= 0.0 && y >= 0.0 && x <= of.width - 1 && y <= of.height - 1)) return {};
   const int i = std::min(static_cast<int>(x), of.width - 2), j = std::min(static_cast<int>(y), of.height - 2);
@@ -194,7 +194,8 @@ Sampled sampled(const Impression& of, const glm::dvec2& at_mm) {
   return out;
 }
 
-PlacedOn refined(const Impression& frame, const Impression& impression, const PlacedOn& start, double period_mm) {
+PlacedOn refined(const SealImpression& frame, const SealImpression& impression, const PlacedOn& start,
+                 double period_mm) {
   constexpr int kLooseRounds = 7, kRounds = 14, kBendRounds = 4;  // bends after that many
   constexpr double kLooseFirstMm = 0.2, kLooseMm = 0.08;  // of the loss: half of what figures stand out, then noise
   // Rest of .08 mm over 33 places of the raster a figure, against strains and bends of .1 mm a cm: 33 (.08 / .1)^2.

@@ -47,17 +47,18 @@ struct Likeness {
 
 /// Masked correlation (D. Padfield: Masked object registration in the Fourier domain, 2012), summed directly: bands
 /// are small. The same for any number of threads. Cost: about .3 s of a processor for bands of 50 mm.
-Likeness likeness_of(const Impression& first, const Impression& second);
+Likeness likeness_of(const SealImpression& first, const SealImpression& second);
 
 /// Value of a raster between its cells, and 0 of `weight` beside it.
 struct Sampled {
   double mm = 0.0, weight = 0.0, figure = 0.0, raised = 0.0;
 };
-Sampled sampled(const Impression& impression, const glm::dvec2& at_mm);
+Sampled sampled(const SealImpression& impression, const glm::dvec2& at_mm);
 
 /// Moves `start` until what stands out of the impression lies on that of the frame best: affine and bends, by
 /// Gauss, Newton with a bounded loss, so that what only one of both shows does not pull. `period_mm`: of the frame
 /// along x; 0: none.
-PlacedOn refined(const Impression& frame, const Impression& impression, const PlacedOn& start, double period_mm);
+PlacedOn refined(const SealImpression& frame, const SealImpression& impression, const PlacedOn& start,
+                 double period_mm);
 
 }  // namespace dubsar

@@ -17,7 +17,7 @@ constexpr double kHatchMm = 0.8;     // from line to line, as in hand copies of 
 
 /// Height as it is wanted, and whether it is shown, at mm from the lower left corner.
 struct Wanted {
-  const Impression& relief;
+  const SealImpression& relief;
   bool as_stone;
   Sampled operator()(glm::dvec2 mm) const {
     if (as_stone) mm.x = (relief.width - 1) * relief.step_mm - mm.x;
@@ -29,7 +29,7 @@ struct Wanted {
 
 }  // namespace
 
-Image draw_seal(const Impression& relief, const SealPictureOptions& options) {
+Image draw_seal(const SealImpression& relief, const SealPictureOptions& options) {
   const double pixel = kMmPerInch / options.dpi;
   const double wide = (relief.width - 1) * relief.step_mm, high = (relief.height - 1) * relief.step_mm;
   Image out(std::max(1, static_cast<int>(std::lround(wide / pixel))),
@@ -61,7 +61,7 @@ Image draw_seal(const Impression& relief, const SealPictureOptions& options) {
   return out;
 }
 
-TriMesh seal_surface(const Impression& relief, bool as_stone) {
+TriMesh seal_surface(const SealImpression& relief, bool as_stone) {
   TriMesh out;
   out.frame.input_voxel.mm = glm::dvec3(1.0);
   out.frame.input_voxel.provenance = "seal";

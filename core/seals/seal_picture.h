@@ -14,10 +14,10 @@ struct SealPictureOptions {
 };
 
 /// Gray, lit from the upper left at 30 degrees; what no impression shows is hatched. 25.4 mm are dpi pixels.
-Image draw_seal(const Impression& relief, const SealPictureOptions& options);
+Image draw_seal(const SealImpression& relief, const SealPictureOptions& options);
 
 /// A surface of one vertex a place of the raster, mm, x along the rolling, heights along z; holes where nothing is
 /// shown.
-TriMesh seal_surface(const Impression& relief, bool as_stone);
+TriMesh seal_surface(const SealImpression& relief, bool as_stone);
 
 }  // namespace dubsar

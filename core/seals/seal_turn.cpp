@@ -41,7 +41,7 @@ void find_turn(const std::vector<AlikePair>& pairs, SealPlacing& out) {
 
 }  // namespace
 
-SealPlacing place_impressions(const std::vector<Impression>& impressions, std::size_t first, double turn_mm) {
+SealPlacing place_impressions(const std::vector<SealImpression>& impressions, std::size_t first, double turn_mm) {
   SealPlacing out;
   const std::size_t count = impressions.size();
   out.seal_from_band.resize(count);

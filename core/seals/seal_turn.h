@@ -20,6 +20,6 @@ struct SealPlacing {
 /// reaches 3.5. The turn is the length at which impressions, each moved by it against the others and against itself,
 /// are most alike beyond chance (15 to 90 mm, cylinder seals are 20 to 80 round), from 3 deviations on. `turn_mm` more
 /// than 0: said.
-SealPlacing place_impressions(const std::vector<Impression>& impressions, std::size_t first, double turn_mm);
+SealPlacing place_impressions(const std::vector<SealImpression>& impressions, std::size_t first, double turn_mm);
 
 }  // namespace dubsar

@@ -113,7 +113,7 @@ struct JudgedSeal {
 
 /// A relief in the frame of a band, against the seal that was rolled. What it does not show counts as its mean.
 JudgedSeal judge_seal(const phantom::Phantom& truth, std::size_t sealing, const UnrolledBand& band,
-                      const Impression& relief, const glm::dvec2& least, double turn_mm, const SealGrid& any) {
+                      const SealImpression& relief, const glm::dvec2& least, double turn_mm, const SealGrid& any) {
   const double voxel = truth.options().voxel_mm;
   SealGrid grid;
   for (int y = 0; y < relief.height; ++y)
@@ -202,7 +202,7 @@ int run_seals(int argc, char** argv) {
         seals_value(make_tri_mesh(model, {.partition = model.partitions.find(PartitionKind::kEnvelopeOutside)->id}));
     const double voxel = truth->options().voxel_mm;
     std::vector<UnrolledBand> bands;
-    std::vector<Impression> impressions;
+    std::vector<SealImpression> impressions;
     SealGrid any;
     const auto sealings = truth->sealings();
     for (std::size_t s = 0; s < 3; ++s) {

@@ -83,7 +83,7 @@ Result<VerbResult> run_seal(const SealRequest& request, Progress& progress) {
   DUBSAR_ASSIGN(const TriMesh mesh, sealed_part(request, progress));
   UnrollOptions unrolling;
   unrolling.step_mm = request.step_mm;
-  std::vector<Impression> impressions;
+  std::vector<SealImpression> impressions;
   VerbResult result;
   double flattest = 1e9;
   for (std::size_t k = 0; k < strips.size(); ++k) {

@@ -95,7 +95,7 @@ HeightMap rolled(const DrawnSeal& seal, const Rolled& how, const Worn& worn, uns
 }
 
 /// Error of a relief in the frame of the first impression, over one turn; what is not shown counts as ground.
-double error_of(const DrawnSeal& seal, const Impression& relief, const glm::dvec2& least, const Rolled& first) {
+double error_of(const DrawnSeal& seal, const SealImpression& relief, const glm::dvec2& least, const Rolled& first) {
   double sum = 0.0, count = 0.0;
   for (double y = 1.5; y < kSealHigh - 1.5; y += 0.25)
     for (double x = 0.0; x < kSealTurn; x += 0.25) {
@@ -111,7 +111,7 @@ double error_of(const DrawnSeal& seal, const Impression& relief, const glm::dvec
 TEST(SealAverage, OfThreeWornImpressionsIsNearerToTheSealThanTheBestOfThem) {
   for (const unsigned seed : {11u, 12u, 13u}) {
     const DrawnSeal seal(seed);
-    std::vector<Impression> impressions;
+    std::vector<SealImpression> impressions;
     double best = 1e9;
     for (unsigned k = 0; k < 3; ++k) {
       impressions.push_back(level_impression(rolled(seal, kRolled[k], Worn(100 * seed + k), seed + k)));
@@ -131,9 +131,9 @@ TEST(SealAverage, OfThreeWornImpressionsIsNearerToTheSealThanTheBestOfThem) {
 TEST(SealAverage, OfAnotherSealIsLeftOut) {
   const DrawnSeal seal(21), other(22);
   const Worn whole(1), worn(2), third(3);
-  const std::vector<Impression> impressions{level_impression(rolled(seal, kRolled[0], whole, 1)),
-                                            level_impression(rolled(seal, kRolled[1], worn, 2)),
-                                            level_impression(rolled(other, kRolled[2], third, 3))};
+  const std::vector<SealImpression> impressions{level_impression(rolled(seal, kRolled[0], whole, 1)),
+                                                level_impression(rolled(seal, kRolled[1], worn, 2)),
+                                                level_impression(rolled(other, kRolled[2], third, 3))};
   const SealAverage average = average_seal(impressions);
   EXPECT_EQ(average.used[1], 1);
   EXPECT_EQ(average.used[2], 0) << average.placing.likeness[2];
