@@ -7,7 +7,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <regex>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/files/sealed_text.h"
 
@@ -77,6 +80,25 @@ TEST(CopySheet, DxfHasLayersAndLines) {
   EXPECT_NE(dxf.find("0\nLAYER\n2\nOBVERSE-VERTICAL\n"), std::string::npos);
   EXPECT_NE(dxf.find("0\nVERTEX\n8\nOBVERSE-VERTICAL\n10\n10.0000\n20\n28.0000\n"), std::string::npos);
   EXPECT_TRUE(dxf.ends_with("0\nEOF\n"));
+}
+
+// DXF is pairs of lines: a code, a value (Autodesk, DXF Reference, R12). Read back as such, not by the text around it.
+TEST(CopySheet, DxfReadBackIsAtTrueScale) {
+  std::istringstream lines(dxf_of(ten_mm()));
+  std::vector<std::pair<double, double>> corners;
+  std::string code, value, entity;
+  while (std::getline(lines, code) && std::getline(lines, value)) {
+    const int number = std::atoi(code.c_str());
+    if (number == 0) {
+      entity = value;
+      if (entity == "VERTEX") corners.emplace_back(NAN, NAN);
+    }
+    if (entity == "VERTEX" && number == 10) corners.back().first = std::strtod(value.c_str(), nullptr);
+    if (entity == "VERTEX" && number == 20) corners.back().second = std::strtod(value.c_str(), nullptr);
+  }
+  EXPECT_EQ(entity, "EOF");
+  ASSERT_EQ(corners.size(), 2u);
+  EXPECT_NEAR(std::hypot(corners[1].first - corners[0].first, corners[1].second - corners[0].second), 10.0, 0.02);
 }
 
 }  // namespace
