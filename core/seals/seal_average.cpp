@@ -12,7 +12,7 @@ constexpr int kPlacingRounds = 2;
 constexpr int kWeightRounds = 3;
 constexpr double kAgreeMm = 0.8;              // deviation of the window in which impressions are compared: a limb
 constexpr double kLooseSquare = 0.05 * 0.05;  // mm2, as the loss of refined()
-constexpr double kTurnOffMm = 0.8, kTurnStepMm = 0.1;  // the search has cells of .4 mm
+constexpr double kTurnOffMm = 0.8, kFinerTurnStepMm = 0.1;  // the search has cells of .4 mm
 constexpr double kWornShare = 0.15;  // of the most figures that another impression shows there: it is worn level
 
 /// What one turn of one impression has over the seal's raster.
@@ -174,7 +174,7 @@ double finer_turn(const std::vector<SealImpression>& impressions, SealPlacing pl
                   const std::vector<std::uint8_t>& used) {
   const double turn = placing.turn_mm;
   double best = turn, most = -1.0;
-  for (double off = -kTurnOffMm; off <= kTurnOffMm + 1e-9; off += kTurnStepMm) {
+  for (double off = -kTurnOffMm; off <= kTurnOffMm + 1e-9; off += kFinerTurnStepMm) {
     placing.turn_mm = turn + off;
     const Canvas canvas = canvas_of(impressions, placing, used);
     const double agree = agreement(views_of(impressions, placing, used, canvas), canvas) * turn / placing.turn_mm;

@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kCellsOfRadius = 24.0;
 constexpr std::array<double, 3> kRadii{1.0, 0.5, 0.25};  // tried one after the other
-constexpr double kGroundShare = 0.55;                    // of what is near: less lies on the sheet where the side bends
+constexpr double kBaseGroundShare = 0.55;                // of what is near: less lies on the sheet where the side bends
 constexpr double kSameSide = 0.35;                       // cosine: what looks 70 degrees away belongs to another side
 constexpr std::size_t kLeastCells = 24;                  // four a term
 constexpr int kSheetRounds = 2;                          // the second one from the first one's place
 constexpr int kSpanRounds = 4, kGroundRounds = 4;
 // With a quarter of the surface broken away by .35 mm and a twelfth figures of .25 mm the sheet lies on the ground.
 constexpr double kBelowCounts = 0.25;
-constexpr double kGroundMm = 0.25;  // what lies farther off is not ground: half of what seals are cut
+constexpr double kBaseGroundMm = 0.25;  // what lies farther off is not ground: half of what seals are cut
 
 std::int64_t block_of(double x, double edge) { return static_cast<std::int64_t>(std::floor(x / edge)); }
 
@@ -89,7 +89,7 @@ std::optional<BasePlace> SmoothBase::sheet(const BasePlace& from, double radius,
   for (int round = 0; round < kSpanRounds + kGroundRounds; ++round) {
     SheetEquations equations;
     for (const Seen& s : seen) {
-      const double t = s.off * radius / kGroundMm;
+      const double t = s.off * radius / kBaseGroundMm;
       double counts = t < 0.0 ? kBelowCounts : 1.0;
       if (round >= kSpanRounds) counts = std::abs(t) < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
       if (counts > 0.0) equations.add(s.place, s.height, s.weight * counts);
@@ -103,10 +103,10 @@ std::optional<BasePlace> SmoothBase::sheet(const BasePlace& from, double radius,
   if (!terms) return {};
   double on = 0.0, all = 0.0;
   for (const Seen& s : seen) {
-    on += std::abs(s.off * radius) < kGroundMm ? s.weight : 0.0;
+    on += std::abs(s.off * radius) < kBaseGroundMm ? s.weight : 0.0;
     all += s.weight;
   }
-  if (!last && on < kGroundShare * all) return {};
+  if (!last && on < kBaseGroundShare * all) return {};
   return BasePlace{from.at_mm + radius * (*terms)[0] * n, glm::normalize(n - (*terms)[1] * u - (*terms)[2] * v)};
 }
 
