@@ -135,7 +135,7 @@ lab() {
 sanitized_parts=(
   "core/base core/image_io core/hdf5 core/mesh"
   "core/volume core/filter core/phantom"
-  "core/extract core/relief core/refine core/rays core/parts core/contact core/script core/edition core/compare"
+  "core/extract core/relief core/refine core/rays core/parts core/contact core/script core/edition core/seals core/compare"
   "core/exa core/mesh_io core/pipeline"
   "devices input"
   "display"

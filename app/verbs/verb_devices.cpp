@@ -184,8 +184,10 @@ Result<VerbResult> run_live(const DevicesRequest& options, bool print, Progress&
                 "--record FILE",
                 spec.driver);
   OpenTransport open;
+  bool pictures = false;
   if (!is_plugin(spec.driver)) {
     DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices", driver_table()));
+    pictures = driver->gives == Gives::kStereoPictures;
     if (driver->bus == Bus::kService && records)
       return fail(ErrorKind::kUsage,
                   "devices: {} is a service and sends no bytes of a device: record its hands with dubsar "
@@ -197,7 +199,7 @@ Result<VerbResult> run_live(const DevicesRequest& options, bool print, Progress&
   }
   std::shared_ptr<RecordingWriter> writer;
   if (records) {
-    DUBSAR_ASSIGN(writer, RecordingWriter::create(options.file, spec.driver, "", clock));
+    DUBSAR_ASSIGN(writer, RecordingWriter::create(options.file, spec.driver, "", clock, pictures));
     open = [open = std::move(open), writer]() -> Result<std::unique_ptr<Transport>> {
       DUBSAR_ASSIGN(auto transport, open());
       return make_record_transport(std::move(transport), writer);

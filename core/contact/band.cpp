@@ -51,7 +51,7 @@ std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing)
         }
     }
   }
-  return thinned(points, 0.75f * spacing);
+  return thinned(points, 0.5f * spacing);
 }
 
 glm::vec3 middle_of(const std::vector<PatchPoint>& samples) {
@@ -119,23 +119,6 @@ void ContactBand::trim_envelope(float reach) {
   std::erase_if(nodes, [&](const Node& node) { return node.distance > reach_at(node.height); });
   node_at = BrickMap<std::uint32_t>(node_at.dims(), kNone);
   for (std::uint32_t n = 0; n < nodes.size(); ++n) node_at.at(nodes[n].x, nodes[n].y, nodes[n].z) = n;
-}
-
-void grow(const ContactBand& band, int steps, std::vector<bool>& marked) {
-  std::vector<std::uint32_t> front, next;
-  for (std::uint32_t n = 0; n < marked.size(); ++n)
-    if (marked[n]) front.push_back(n);
-  for (int step = 0; step < steps; ++step) {
-    next.clear();
-    for (const std::uint32_t n : front)
-      each_beside(band.point(n), [&](const glm::ivec3& q) {
-        const std::uint32_t m = band.at(q);
-        if (m == ContactBand::kNone || marked[m]) return;
-        marked[m] = true;
-        next.push_back(m);
-      });
-    front.swap(next);
-  }
 }
 
 }  // namespace dubsar

@@ -70,7 +70,4 @@ struct ContactBand {
   void trim_envelope(float reach);
 };
 
-/// Marks the nodes within so many steps along the grid of those that are marked.
-void grow(const ContactBand& band, int steps, std::vector<bool>& marked);
-
 }  // namespace dubsar

@@ -70,9 +70,8 @@ class RecordTransport final : public ForwardingTransport {
 
 Result<std::shared_ptr<RecordingWriter>> RecordingWriter::create(const std::filesystem::path& path,
                                                                  std::string_view driver, std::string_view note,
-                                                                 const Clock& clock) {
+                                                                 const Clock& clock, bool raw) {
   DUBSAR_ASSIGN(GrowingFile file, GrowingFile::create(path));
-  const bool raw = records_raw(driver);
   const Recording header{std::string(driver), std::string(note), {}, raw};
   return std::shared_ptr<RecordingWriter>(new RecordingWriter(std::move(file), format_recording(header), raw, clock));
 }

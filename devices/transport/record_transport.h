@@ -18,9 +18,10 @@ namespace dubsar {
 /// leaves a usable recording there. The first error ends the writing; it is kept for finish(). Any thread.
 class RecordingWriter {
  public:
-  /// kCannotCreate: also where something is that a file must not replace; kPermission.
+  /// `raw`: of version 2, for reports that are pictures. kCannotCreate: also where something is that a file must not
+  /// replace; kPermission.
   static Result<std::shared_ptr<RecordingWriter>> create(const std::filesystem::path& path, std::string_view driver,
-                                                         std::string_view note, const Clock& clock);
+                                                         std::string_view note, const Clock& clock, bool raw = false);
   ~RecordingWriter();
 
   /// Adds one event at the present time.

@@ -110,7 +110,7 @@ class ReplayTransport final : public Transport {
 ReplaySession::ReplaySession(Recording recording, const Clock& clock, double factor)
     : recording_(std::move(recording)),
       clock_(&clock),
-      pictures_(records_raw(recording_.driver)),
+      pictures_(recording_.raw),
       factor_(std::isfinite(factor) ? std::clamp(factor, 0.0, 1e6) : 1.0),
       start_(clock.now()) {}
 

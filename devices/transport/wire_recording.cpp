@@ -95,15 +95,13 @@ std::string one_line(std::string_view text) {
 
 }  // namespace
 
-bool records_raw(std::string_view driver) noexcept { return driver == "leap"; }
-
 bool ends_picture(const RecordedEvent& event) noexcept {
   constexpr std::byte kEndOfFrame{2};
   return event.kind == WireEventKind::kRead && event.bytes.size() > 2 && (event.bytes[1] & kEndOfFrame) != std::byte{0};
 }
 
 std::int64_t pictures_in(const Recording& recording) {
-  if (!records_raw(recording.driver)) return 0;
+  if (!recording.raw) return 0;
   return std::count_if(recording.events.begin(), recording.events.end(), ends_picture);
 }
 

@@ -52,7 +52,7 @@ struct Recording {
   std::string driver;
   std::string note;
   std::vector<RecordedEvent> events;
-  bool raw = false;      ///< of version 2
+  bool raw = false;      ///< of version 2: the driver's reports are pictures
   bool cut_off = false;  ///< the last line had no end (the program stopped while it was written) and was left out
 };
 
@@ -67,8 +67,6 @@ Result<Recording> read_recording(const std::filesystem::path& path);
 /// One event as its line, with the line feed; `raw`: as in version 2.
 std::string format_event(const RecordedEvent& event, bool raw = false);
 
-/// Whether a driver's recordings are of version 2: its reports are pictures.
-bool records_raw(std::string_view driver) noexcept;
 /// A report that ends a picture.
 bool ends_picture(const RecordedEvent& event) noexcept;
 /// Of such a recording: reports whose header says that a picture ends (UVC 1.0, 2.4.3.3). Of others 0.

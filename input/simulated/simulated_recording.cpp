@@ -17,7 +17,8 @@ Result<std::int64_t> write_simulated_recording(const DriverEntry& driver, const 
                 driver.longest_simulation_s);
   ManualClock clock;
   DUBSAR_ASSIGN(const SimulatedFeed feed, simulate_device(driver, std::move(options), clock));
-  DUBSAR_ASSIGN(const auto writer, RecordingWriter::create(path, driver.name, "made by a simulator, no device", clock));
+  DUBSAR_ASSIGN(const auto writer, RecordingWriter::create(path, driver.name, "made by a simulator, no device", clock,
+                                                           driver.gives == Gives::kStereoPictures));
   OptionReader none({}, "simulate");
   const auto device = driver.drive(
       [writer, below = open_simulated(feed.device, clock)]() -> Result<std::unique_ptr<Transport>> {
