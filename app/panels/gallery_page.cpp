@@ -13,7 +13,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr float kNarrow = 1.25f;        // panels whose sides are little more than what buttons take
+constexpr float kNarrow = 1.5f;         // panels whose sides are little more than what buttons take
 constexpr float kWordsEnd = 0.2f;       // of the height, at the lower edge
 constexpr float kSentenceRoom = 0.88f;  // for a sentence, of the panel's width
 constexpr double kLargestLetters = 0.075, kSmallerLetters = 0.8;

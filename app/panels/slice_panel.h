@@ -11,5 +11,4 @@ namespace dubsar::app {
 /// Where the pictures of kSliceNames stand in the layout; `large` as of ScanView.
 std::array<PanelRect, kSlices> slice_rects(float width, float height, int large) noexcept;
 
-
 }  // namespace dubsar::app

@@ -38,9 +38,9 @@ struct AddedArtefacts {
 
 /// How the tablet was written on, and the envelope sealed.
 struct WritingOptions {
-  bool written = true;  ///< false: nobody wrote on the tablet
-  bool ruled = true;    ///< lines are ruled; nothing else changes
-  double pushed = 0.0;  ///< clay that a later wedge pushes into an earlier one beside it, of its depth
+  bool written = true;      ///< false: nobody wrote on the tablet
+  bool ruled = true;        ///< lines are ruled; nothing else changes
+  double pushed = 0.0;      ///< clay that a later wedge pushes into an earlier one beside it, of its depth
   double seals_lost = 0.0;  ///< share of each band of the envelope whose sealing is worn level or broken away
 };
 
@@ -66,9 +66,10 @@ struct PhantomOptions {
 Result<PhantomOptions> parse_preset(std::string_view name);
 
 /// Checks size (32 voxels to 65535 along each axis, and the memory budget's voxel limit), noise (0..120 dB or
-/// infinity), voxel edge, film (0.05 to 2 voxels), pushed clay (up to 0.5), lost sealings (up to 0.9), share of contact (up to 0.6), gap (1 to 64
-/// voxels), wedges (2 to 64 voxels), density (0.5 to 1.5), rings (up to 1), blur (0.3 to 1.1), cupping (up to 0.5),
-/// streaks (up to 0.3) and holder (0.02 to 3), and fills in voxel_mm when it is 0. kUsage.
+/// infinity), voxel edge, film (0.05 to 2 voxels), pushed clay (up to 0.5), lost sealings (up to 0.9), share of contact
+/// (up to 0.6), gap (1 to 64 voxels), wedges (2 to 64 voxels), density (0.5 to 1.5), rings (up to 1), blur (0.3
+/// to 1.1), cupping (up to 0.5), streaks (up to 0.3) and holder (0.02 to 3), and fills in voxel_mm when it is 0.
+/// kUsage.
 Result<PhantomOptions> complete(PhantomOptions options);
 
 /// The scan shows a border between the two clays: a film of air, or different densities.

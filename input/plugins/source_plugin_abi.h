@@ -13,9 +13,10 @@
  * panel, origin in its middle). Rotations are unit quaternions w, x, y, z. Times are nanoseconds of host->now_ns(); 0
  * means now, times to come are taken as now.
  *
- * The least to fill: of a hand `size`, `id`, `flags`, `chirality`, `palm`, `grab` and `pinch_m`, joints may stay 0; of a
- * head `size`, `id`, `flags` with the eyes that are seen, and those. A hand or head that is away is not told: a read()
- * that returns DUBSAR_SOURCE_NEW without it takes it away. `dubsar devices monitor plugin:FILE.so` shows what is told.
+ * The least to fill: of a hand `size`, `id`, `flags`, `chirality`, `palm`, `grab` and `pinch_m`, joints may stay 0; of
+ * a head `size`, `id`, `flags` with the eyes that are seen, and those. A hand or head that is away is not told: a
+ * read() that returns DUBSAR_SOURCE_NEW without it takes it away. `dubsar devices monitor plugin:FILE.so` shows what is
+ * told.
  *
  * Threads: create() and destroy() are called in the session's thread, open(), read() and close() in one thread of this
  * source alone. read() may wait, at most for the time it is told. A read() that does not come back makes the source

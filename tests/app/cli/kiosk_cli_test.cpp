@@ -74,7 +74,7 @@ TEST_F(Kiosk, AVisitIsSeenTaughtAndForgotten) {
         {"t": 8.0, "at_mm": [40, 25, 250], "grab": 0}]}]})");
   const auto run =
       run_dubsar({"view", "--kiosk", file("kiosk.json"), "--offscreen", "--script", file("visitor.json"), "--frames",
-                  file("pictures"), "--fps", "10", "--every", "5", "--size", "320x240", "--json", "-"});
+                  file("pictures"), "--fps", "10", "--every", "5", "--size", "432x240", "--json", "-"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json figures = json::parse(run.out);
   EXPECT_EQ(figures.at("visits"), 1);

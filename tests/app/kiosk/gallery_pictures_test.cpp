@@ -173,7 +173,7 @@ TEST(GalleryOn, SignsStandAtTheEdgeOfEveryPanelAndTheMenuOnTheFirstOnly) {
 }
 
 TEST_F(GalleryPictures, AHandIsInAPictureATenthOfASecondAfterItCameWithTenPicturesASecond) {
-  constexpr double kCame_s = 0.1 + 2.0, kTracker_s = 0.015;  // the script begins with the first picture
+  constexpr double kCameS = 0.1 + 2.0, kTrackerS = 0.015;  // the script begins with the first picture
   options_.time.fps = 10.0;
   options_.time.longest_s = 4.0;
   Image before;
@@ -195,8 +195,8 @@ TEST_F(GalleryPictures, AHandIsInAPictureATenthOfASecondAfterItCameWithTenPictur
     EXPECT_GT(amber, 10) << "its ring is to be seen";
   });
   ASSERT_TRUE(done) << done.error().message;
-  EXPECT_GE(seen_s, kCame_s);
-  EXPECT_LE(seen_s, kCame_s + kTracker_s + 0.1 + 1e-6);
+  EXPECT_GE(seen_s, kCameS);
+  EXPECT_LE(seen_s, kCameS + kTrackerS + 0.1 + 1e-6);
 }
 
 TEST_F(GalleryPictures, AnArrowRisesWhereAHandSankBeforeItTurnedAnything) {
@@ -273,8 +273,8 @@ int changed_of_the_object(const Image& with, const Image& bare) {
   return out;
 }
 
-TEST_F(GalleryPictures, WordsStandBesideTheObjectAndNeverOnItOnEveryScreenOfThreeShapes) {
-  for (const auto& [width, height] : {std::pair{960, 540}, {720, 720}, {540, 960}}) {
+TEST_F(GalleryPictures, WordsStandBesideTheObjectAndNeverOnItOnEveryScreenOfFourShapes) {
+  for (const auto& [width, height] : {std::pair{960, 540}, {720, 540}, {720, 720}, {540, 960}}) {
     Screen& screen = options_.stage.screen;
     screen.width_px = screen.window_w = width;
     screen.height_px = screen.window_h = height;

@@ -70,12 +70,12 @@ Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script,
 }
 
 /// Nobody is there; the tour is asked for as a finger on its button would.
-class TourStarter final : public SessionGuide {
+class TourStarter final : public SessionController {
  public:
   explicit TourStarter(KioskController& kiosk) : kiosk_(kiosk) {}
   bool takes(const InputEvent& event, TimestampNs now) override { return kiosk_.takes(event, now); }
   void presented(TimestampNs now) override { kiosk_.presented(now); }
-  Guidance lead(const GuideMoment& moment) override {
+  Guidance lead(const SessionMoment& moment) override {
     Guidance out = kiosk_.lead(moment);
     for (const DwellButtonPicture& button : out.picture ? out.picture->buttons : std::vector<DwellButtonPicture>()) {
       if (button.button != DwellButton::kTour || began_ >= 0 || !moment.steered.hands.empty()) continue;
