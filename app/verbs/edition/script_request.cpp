@@ -16,17 +16,22 @@ void add_script_options(Arguments& command, ScriptRequest& request) {
   command.value("--confidence", request.confidence, "least confidence of a wedge, 0 to 1 (0.5)").range(0.0, 1.0);
 }
 
-Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progress) {
-  ScriptSurface out;
-  DUBSAR_ASSIGN(out.mesh, load_written_part(request.in, request.part, request.unit, progress));
-  if (!out.mesh.frame.input_voxel.known()) {
-    if (is_exa_file(request.in))
+Result<void> expect_units(const TriMesh& mesh, const std::string& in) {
+  if (!mesh.frame.input_voxel.known()) {
+    if (is_exa_file(in))
       return fail(ErrorKind::kUsage,
                   "{} does not say how large its voxels are, so there are no mm; process the scan again with "
                   "--voxel-size, e.g. 38um",
-                  request.in);
-    log(LogLevel::kWarning, fmt::format("{} does not state its units; taken as millimetres", request.in));
+                  in);
+    log(LogLevel::kWarning, fmt::format("{} does not state its units; taken as millimetres", in));
   }
+  return {};
+}
+
+Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progress) {
+  ScriptSurface out;
+  DUBSAR_ASSIGN(out.mesh, load_written_part(request.in, request.part, request.unit, progress));
+  DUBSAR_TRY(expect_units(out.mesh, request.in));
   WedgeSearch search;
   search.width_mm = request.width_mm;
   search.least_confidence = request.confidence;

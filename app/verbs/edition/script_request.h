@@ -16,6 +16,10 @@ struct ScriptRequest {
 
 void add_script_options(Arguments& command, ScriptRequest& request);
 
+/// Whether a surface read from `in` can be measured in mm: kUsage for an EXA file that does not know its voxels; of
+/// other files that say no unit a warning, they are taken as millimetres.
+Result<void> expect_units(const TriMesh& mesh, const std::string& in);
+
 /// The surface of a request and its wedges. Errors: those of reading, and kUsage where an EXA file has no voxel size.
 struct ScriptSurface {
   TriMesh mesh;

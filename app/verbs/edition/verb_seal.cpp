@@ -11,6 +11,7 @@
 #include "app/cli/default_output.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/verbs/edition/script_request.h"
 #include "core/base/files/file_suffix.h"
 #include "core/base/system/log.h"
 #include "core/base/text/parse_number.h"
@@ -41,14 +42,7 @@ Result<TriMesh> sealed_part(const SealRequest& request, Progress& progress) {
     DUBSAR_ASSIGN(mesh,
                   load_written_part(request.in, request.part == "auto" ? "all" : request.part, request.unit, progress));
   }
-  if (!mesh.frame.input_voxel.known()) {
-    if (is_exa_file(request.in))
-      return fail(ErrorKind::kUsage,
-                  "{} does not say how large its voxels are, so there are no mm; process the scan again with "
-                  "--voxel-size, e.g. 38um",
-                  request.in);
-    log(LogLevel::kWarning, fmt::format("{} does not state its units; taken as millimetres", request.in));
-  }
+  DUBSAR_TRY(expect_units(mesh, request.in));
   return mesh;
 }
 

@@ -26,12 +26,11 @@ constexpr int kColumns = 4, kRows = 3, kTileWidth = 480, kTileHeight = 360;
 /// rests on the button, what was inside is out, everything is as at the beginning.
 constexpr std::array<double, 7> kMoments{1.1, 4.4, 6.6, 7.7, 12.1, 15.4, 29.7};
 
-Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script, const std::string& display, int width,
-                                 int height) {
+/// A gallery's window of that size, led by a script of hands.
+Result<ViewOptions> gallery_options(const std::string& script, int width, int height) {
   ViewOptions options;
   DUBSAR_ASSIGN(options.mapping, gallery_mapping());
   DUBSAR_ASSIGN(options.stage.shading, shading_preset("relief"));
-  DUBSAR_ASSIGN(options.stage.display, parse_sink_spec(display));
   Screen& screen = options.stage.screen;
   screen.width_px = screen.window_w = width;
   screen.height_px = screen.window_h = height;
@@ -41,16 +40,29 @@ Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script,
   options.inputs = {"scripted:path=" + script};
   options.around.notices = false;
   options.work.upright = true;
-  options.time.fps = kFps;
-  options.time.longest_s = kLongestSeconds;
-  options.files.every = kEvery;
+  return options;
+}
+
+/// Of a kiosk with one object.
+KioskParts gallery_parts(const ViewOptions& options) {
   KioskParts parts;
   parts.profile.objects = {{.file = "tablet", .title = {{"en", "A sealed contract"}}}};
   parts.profile.pin = "90210735";
-  parts.profile.idle_reset_s = 8.0;
-  parts.profile.attract_after_s = 2.0;
   parts.zone = {1e-3 * options.mapping.hands.zone_min_mm, 1e-3 * options.mapping.hands.zone_max_mm};
   parts.wall = [] { return WallTime{1'790'000'000, 720}; };
+  return parts;
+}
+
+Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script, const std::string& display, int width,
+                                 int height) {
+  DUBSAR_ASSIGN(ViewOptions options, gallery_options(script, width, height));
+  DUBSAR_ASSIGN(options.stage.display, parse_sink_spec(display));
+  options.time.fps = kFps;
+  options.time.longest_s = kLongestSeconds;
+  options.files.every = kEvery;
+  KioskParts parts = gallery_parts(options);
+  parts.profile.idle_reset_s = 8.0;
+  parts.profile.attract_after_s = 2.0;
   KioskController guide(std::move(parts));
   options.guide = &guide;
   SilentProgress progress;
@@ -100,26 +112,11 @@ class TourStarter final : public SessionController {
 /// Pictures of the tour that a sealed tablet has, at these seconds of it.
 Result<std::vector<Image>> tour(const TriMesh& mesh, const std::string& script, std::span<const double> moments,
                                 int width, int height) {
-  ViewOptions options;
-  DUBSAR_ASSIGN(options.mapping, gallery_mapping());
-  DUBSAR_ASSIGN(options.stage.shading, shading_preset("relief"));
-  Screen& screen = options.stage.screen;
-  screen.width_px = screen.window_w = width;
-  screen.height_px = screen.window_h = height;
-  screen.height_mm = screen.width_mm * height / width;
-  options.stage.samples = 2;
-  options.stage.room.gallery = true;
-  options.inputs = {"scripted:path=" + script};
-  options.around.notices = false;
-  options.work.upright = true;
+  DUBSAR_ASSIGN(ViewOptions options, gallery_options(script, width, height));
   options.time.fps = 5.0;
   options.time.longest_s = 20.0 + moments.back();
   options.files.every = 5;
-  KioskParts parts;
-  parts.profile.objects = {{.file = "tablet", .title = {{"en", "A sealed contract"}}}};
-  parts.profile.pin = "90210735";
-  parts.zone = {1e-3 * options.mapping.hands.zone_min_mm, 1e-3 * options.mapping.hands.zone_max_mm};
-  parts.wall = [] { return WallTime{1'790'000'000, 720}; };
+  KioskParts parts = gallery_parts(options);
   KioskController guide(std::move(parts));
   TourStarter starter(guide);
   options.guide = &starter;
