@@ -4,19 +4,17 @@
 #include <cmath>
 
 #include "core/base/system/parallel.h"
+#include "core/seals/ground_spline.h"
 
 namespace dubsar {
 namespace {
 
-constexpr double kGroundMm = 3.5;       // deviation: what is wider than 7 mm is the clay's, figures are narrower
-constexpr double kSheetCounts = 0.1;    // of all that could be ground around a place: where little is, the sheet is
 constexpr double kLimbMm = 0.6;         // half the breadth of an arm on seals of 15 to 30 mm
 constexpr double kParaboloidMm = 15.0;  // a body of 3.5 mm sinks into it by a tenth of a millimetre
 constexpr double kParaboloidTop = 1.5;  // mm that it is followed down
 constexpr double kNoiseMm = 0.25;       // deviation, before the opening, which goes by single low places
-constexpr double kGroundShare = 0.5;    // of what figures stand out: what lies as far off is not ground
-constexpr double kBrokenShare = 0.4;    // the same, below it: it broke away
-constexpr int kLevelRounds = 8;
+constexpr double kBrokenShare = 0.4;    // of what figures stand out: what lies lower than that broke away
+constexpr double kLeastStandMm = 0.1, kMostStandMm = 0.8;  // of figures: seals are cut .3 to 1.5 mm deep
 
 std::vector<float> gauss_kernel(double deviation) {
   const int reach = std::max(1, static_cast<int>(std::ceil(2.5 * deviation)));
@@ -118,17 +116,9 @@ SealImpression level_impression(const HeightMap& relief) {
   const std::vector<float> ground = opened(smooth, relief.width, relief.height, relief.step_mm);
   out.raised.resize(height.size());
   for (std::size_t k = 0; k < height.size(); ++k) out.raised[k] = measured[k] * std::max(0.0f, smooth[k] - ground[k]);
-  const float stand = value_at(out.raised, measured, 0.95), counts = static_cast<float>(kGroundShare) * stand;
-  // The sheet is the ground already, but for what it is too wide to follow.
-  std::vector<float> level(height.size()), weight(height.size()), known;
-  for (int round = 0; round < kLevelRounds; ++round) {
-    for (std::size_t k = 0; k < weight.size(); ++k) {
-      const float t = (smooth[k] - level[k]) / counts;
-      weight[k] = std::abs(t) < 1.0f ? measured[k] * (1.0f - t * t) * (1.0f - t * t) : 0.0f;
-    }
-    level = weighted_blur(smooth, weight, relief.width, relief.height, kGroundMm / relief.step_mm, &known);
-    for (std::size_t k = 0; k < level.size(); ++k) level[k] *= known[k] / (known[k] + static_cast<float>(kSheetCounts));
-  }
+  const float stand = value_at(out.raised, measured, 0.95);
+  const std::vector<float> level = ground_under(height, measured, {relief.width, relief.height, relief.step_mm},
+                                                std::clamp(static_cast<double>(stand), kLeastStandMm, kMostStandMm));
   std::vector<float> broken(height.size());
   for (std::size_t k = 0; k < height.size(); ++k) {
     broken[k] = smooth[k] < level[k] - static_cast<float>(kBrokenShare) * stand ? 1.0f : 0.0f;

@@ -25,11 +25,11 @@ struct SealImpression {
 std::vector<float> weighted_blur(const std::vector<float>& values, const std::vector<float>& weights, int width,
                                  int height, double deviation, std::vector<float>* mean_weight = nullptr);
 
-/// What stands out is told from the ground by an opening with a paraboloid of 15 mm radius (R. van den Boomgaard, A.
-/// Smeulders: The morphological structure of images, 1994): limbs and bodies are narrower than it, and a step of what
-/// broke away leaves nothing. The ground is the band's sheet, and over 3.5 mm what of the surface lies on it (Tukey's
-/// biweight, in rounds, by what figures stand out). What lies lower than that by two fifths of what figures stand out
-/// broke away, and that, with what is within a limb's width of it, is not shown.
+/// The ground is what ground_under() finds. How far figures stand out is told by an opening with a paraboloid of 15 mm
+/// radius (R. van den Boomgaard, A. Smeulders: The morphological structure of images, 1994): limbs and bodies are
+/// narrower than it, and a step of what broke away leaves nothing. What lies lower than the ground by two fifths of
+/// that broke away, and that, with what is within a limb's width of it, is not shown; breaks wider than 6 mm are
+/// followed by the ground and read as worn.
 SealImpression level_impression(const HeightMap& relief);
 
 }  // namespace dubsar

@@ -1,6 +1,7 @@
 #include "core/seals/seal_average.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
@@ -28,6 +29,11 @@ struct Canvas {
   std::size_t cells() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
+std::array<glm::dvec2, 4> corners_of(const SealImpression& of) {
+  const glm::dvec2 size = of.step_mm * glm::dvec2(of.width - 1, of.height - 1);
+  return {glm::dvec2(0.0), {size.x, 0.0}, {0.0, size.y}, size};
+}
+
 Canvas canvas_of(const std::vector<SealImpression>& impressions, const SealPlacing& placing,
                  const std::vector<std::uint8_t>& used) {
   Canvas out;
@@ -36,8 +42,7 @@ Canvas canvas_of(const std::vector<SealImpression>& impressions, const SealPlaci
   glm::dvec2 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
   for (std::size_t k = 0; k < impressions.size(); ++k) {
     if (!used[k]) continue;
-    const glm::dvec2 size = impressions[k].step_mm * glm::dvec2(impressions[k].width - 1, impressions[k].height - 1);
-    for (const glm::dvec2& corner : {glm::dvec2(0.0), glm::dvec2(size.x, 0), glm::dvec2(0, size.y), size}) {
+    for (const glm::dvec2& corner : corners_of(impressions[k])) {
       low = glm::min(low, placing.seal_from_band[k](corner));
       high = glm::max(high, placing.seal_from_band[k](corner));
     }
@@ -59,8 +64,18 @@ std::vector<SealView> views_of(const std::vector<SealImpression>& impressions, c
   for (std::size_t k = 0; k < impressions.size(); ++k) {
     if (!used[k]) continue;
     const PlacedOn& place = placing.seal_from_band[k];
-    constexpr int kMostTurns = 12;
-    for (int turn = canvas.turn_mm > 0.0 ? -kMostTurns : 0; turn <= (canvas.turn_mm > 0.0 ? kMostTurns : 0); ++turn) {
+    int first_turn = 0, last_turn = 0;
+    if (canvas.turn_mm > 0.0) {
+      constexpr double kBentMm = 1.0;  // corners do not say how far the rim between them bends out
+      double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+      for (const glm::dvec2& corner : corners_of(impressions[k])) {
+        low = std::min(low, place(corner).x - kBentMm);
+        high = std::max(high, place(corner).x + kBentMm);
+      }
+      first_turn = static_cast<int>(std::floor(low / canvas.turn_mm));
+      last_turn = static_cast<int>(std::floor(high / canvas.turn_mm));
+    }
+    for (int turn = first_turn; turn <= last_turn; ++turn) {
       SealView view{k, {canvas.width, canvas.height, canvas.step_mm, {}, {}, {}, {}}};
       view.over.mm.resize(canvas.cells());
       view.over.shown.resize(canvas.cells());
