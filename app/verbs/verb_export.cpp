@@ -37,6 +37,8 @@ Result<VerbResult> run(const ExportRequest& options, Progress& progress) {
   if (mesh.triangles.empty() && !mesh.positions.empty())
     return fail(ErrorKind::kBadData, "{}: a point cloud of {} points without triangles found, expected a surface",
                 options.in, mesh.positions.size());
+  if (mesh.triangles.empty())
+    return fail(ErrorKind::kBadData, "{}: no triangles found, expected a surface", options.in);
   if (options.simplify) {
     const SimplifyOptions limits{options.simplify_angle_deg * std::numbers::pi / 180.0, options.simplify_distance_vox};
     DUBSAR_ASSIGN(mesh, simplify(mesh, limits, progress));

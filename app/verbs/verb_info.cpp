@@ -10,6 +10,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/publish/surface_facts.h"
+#include "core/base/files/file_suffix.h"
 #include "core/base/numbers/units.h"
 #include "core/base/system/budget.h"
 #include "core/base/text/plain_text.h"
@@ -207,8 +208,8 @@ Result<VerbResult> describe_mesh(const InfoRequest& options, Progress& progress)
   const glm::dvec3 middle = 0.5 * (info.min_mm + info.max_mm);
   if (std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)}) > kFarOff * longest)
     text += fmt::format("  lies at      {:.3f}, {:.3f}, {:.3f}\n", middle.x, middle.y, middle.z);
-  if (cloud)
-    text += "  surface      none: points without triangles\n";
+  if (info.triangles == 0)
+    text += fmt::format("  surface      none: {}\n", cloud ? "points without triangles" : "the file has no triangles");
   else
     text += fmt::format("  surface      {}\n",
                         check.watertight()
@@ -228,7 +229,9 @@ Result<VerbResult> describe_mesh(const InfoRequest& options, Progress& progress)
 Result<VerbResult> run(const InfoRequest& options, bool verbose, Progress& progress) {
   const bool raw = !options.input.dims.empty() || !options.input.type.empty();
   if (!raw && is_exa_file(options.in)) return exa_info(options, verbose, progress);
-  if (!raw && mesh_format_from_path(options.in)) return describe_mesh(options, progress);
+  // glTF as text is refused with its own sentence.
+  if (!raw && (mesh_format_from_path(options.in) || lower_suffix(options.in) == ".gltf"))
+    return describe_mesh(options, progress);
   return volume_info(options, progress);
 }
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/mesh_io/coarse_surface.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
+#include "core/mesh_io/no_mesh.h"
 #include "core/mesh_io/text_encoding.h"
 
 namespace dubsar {
@@ -39,12 +40,10 @@ Result<MeshFormat> recognise(const std::filesystem::path& path, std::string_view
   if (bytes.empty()) return fail(ErrorKind::kBadData, "{}: the file is empty", path.string());
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::kPly;
   if (bytes.starts_with("glTF")) return MeshFormat::kGlb;
-  if (is_web_page(bytes))
-    return fail(ErrorKind::kBadData,
-                "{}: a web page or another XML document found, expected a mesh; fetch the file itself", path.string());
-  if (bytes.starts_with("\x89HDF"))
-    return fail(ErrorKind::kBadData, "{}: this is an HDF5 volume, expected a mesh; use dubsar process", path.string());
-  if (const auto by_suffix = mesh_format_from_path(path)) return *by_suffix;
+  const auto by_suffix = mesh_format_from_path(path);
+  if (const auto other = what_is_no_mesh(bytes); other && !(by_suffix && *by_suffix == MeshFormat::k3mf))
+    return fail(ErrorKind::kBadData, "{}: {}", path.string(), *other);
+  if (by_suffix) return *by_suffix;
   if (starts_like_stl(bytes)) return MeshFormat::kStl;
   return fail(ErrorKind::kBadData, "{}: neither content nor suffix is that of a PLY, STL, OBJ or GLB file",
               path.string());

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "core/base/files/buffered_writer.h"
 #include "core/base/system/log.h"
@@ -10,12 +11,12 @@
 #include "core/mesh_io/polygon_soup.h"
 #include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/text_scanner.h"
+#include "core/mesh_io/vertex_colors.h"
 #include "core/mesh_io/vertex_places.h"
 
 namespace dubsar {
 namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr double kNoShare = 16.0;  // colours of 0 to 1 may be a little too bright, not so much
 constexpr std::size_t kMaxLine = std::size_t{1} << 20;
 
 bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
@@ -31,6 +32,47 @@ bool is_obj_word(std::string_view word) {
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 
+/// Comments and lines of names do not: "mtllib C:\scans\" is a folder of Windows.
+bool may_go_on(std::string_view line) {
+  static constexpr std::array kNamed{"mtllib",    "usemtl", "maplib", "usemap", "shadow_obj",
+                                     "trace_obj", "call",   "csh",    "o",      "g"};
+  const std::string_view word = TextScanner(line).word();
+  return !word.starts_with('#') && std::find(kNamed.begin(), kNamed.end(), word) == kNamed.end();
+}
+
+std::string_view without_blanks(std::string_view line) {
+  while (line.ends_with(' ') || line.ends_with('\t')) line.remove_suffix(1);
+  return line;
+}
+
+/// The numbers behind the coordinates of a vertex: r g b, r g b a, or w r g b.
+class ObjColors {
+ public:
+  void add(std::span<const double> values) {
+    missing_ = missing_ || values.size() < 3;
+    if (missing_) return;
+    first_three_.emplace_back(values[0], values[1], values[2]);
+    fourth_.push_back(values.size() > 3 ? static_cast<float>(values[3]) : kNothing);
+    weights_first_ = weights_first_ && values.size() == 4 && values[0] == 1.0;
+  }
+  /// One of each vertex; none where one has none. A weight is 1 everywhere, and so is what covers.
+  std::vector<std::array<std::uint8_t, 3>> bytes() const {
+    if (missing_) return {};
+    if (!weights_first_ || std::all_of(fourth_.begin(), fourth_.end(), [&](float a) { return a == fourth_[0]; }))
+      return color_bytes(first_three_, false);
+    std::vector<glm::vec3> moved;
+    for (std::size_t v = 0; v < first_three_.size(); ++v)
+      moved.emplace_back(first_three_[v].y, first_three_[v].z, fourth_[v]);
+    return color_bytes(moved, false);
+  }
+
+ private:
+  static constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+  std::vector<glm::vec3> first_three_;
+  std::vector<float> fourth_;
+  bool missing_ = false, weights_first_ = true;
+};
+
 struct ObjParser {
   std::string_view bytes;
   Progress& progress;
@@ -40,8 +82,8 @@ struct ObjParser {
   std::vector<glm::vec3> normals;
   std::vector<std::uint32_t> corner_normals;
   std::vector<glm::dvec3> places{};
-  std::vector<glm::dvec3> colors{};  ///< as the file has them
-  bool corners_without_normal = false, vertices_without_color = false;
+  ObjColors colors{};
+  bool corners_without_normal = false;
   PartitionId partition = 0;
   std::size_t line_number = 0, strange_lines = 0, first_strange = 0;
 
@@ -57,12 +99,9 @@ struct ObjParser {
       if (!TextScanner::parse(word, value[count++])) return broken(line, "numbers");
     if (count < 3) return broken(line, "at least 3 coordinates");
     const glm::dvec3 p(value[0], value[1], value[2]);
-    if (!finite(glm::vec3(p))) return broken(line, "finite coordinates");
+    if (!finite(glm::vec3(p))) return broken(line, "finite coordinates below 3e38");
     places.push_back(p);
-    if (count < 6)
-      vertices_without_color = true;
-    else
-      colors.emplace_back(value[3], value[4], value[5]);
+    colors.add({value + 3, static_cast<std::size_t>(count - 3)});
     return {};
   }
 
@@ -83,8 +122,9 @@ struct ObjParser {
       std::uint32_t n = kNone;
       if (slash != std::string_view::npos) {
         if (const std::size_t second = word.find('/', slash + 1); second != std::string_view::npos) {
-          n = resolved(word.substr(second + 1), normals.size());
-          if (n == kNone) return broken(line, "normal numbers that exist");
+          const std::string_view number = word.substr(second + 1);
+          n = resolved(number, normals.size());
+          if (n == kNone && !number.empty() && number != "0") return broken(line, "normal numbers that exist");
         }
       }
       corners_without_normal = corners_without_normal || n == kNone;
@@ -101,7 +141,7 @@ struct ObjParser {
     TextScanner words(line);
     const std::string_view key = words.word();
     if (key == "v") return vertex(words, line);
-    if (key == "f") return face(words, line);
+    if (key == "f" || key == "fo") return face(words, line);
     if (key == "vn") {
       glm::dvec3 n(0.0);
       if (!words.number(n.x) || !words.number(n.y) || !words.number(n.z)) return broken(line, "3 numbers");
@@ -128,10 +168,10 @@ struct ObjParser {
     while (!scanner.rest().empty()) {
       std::string_view line = scanner.line();
       ++line_number;
-      if (line.ends_with('\\')) {
+      if (without_blanks(line).ends_with('\\') && may_go_on(line)) {
         joined.clear();
-        while (line.ends_with('\\') && joined.size() <= kMaxLine) {
-          joined.append(line.substr(0, line.size() - 1)).push_back(' ');
+        while (without_blanks(line).ends_with('\\') && joined.size() <= kMaxLine) {
+          joined.append(without_blanks(line), 0, without_blanks(line).size() - 1).push_back(' ');
           line = scanner.line();
           ++line_number;
         }
@@ -159,7 +199,7 @@ struct ObjParser {
     for (const std::uint32_t v : soup.corners)
       if (v >= count) return fail(ErrorKind::kBadData, "obj: a face names vertex {}, but there are {}", v + 1, count);
     if (!soup.corners.empty() && !corners_without_normal) DUBSAR_TRY(vertex_normals());
-    if (!vertices_without_color) vertex_colors();
+    mesh.colors = colors.bytes();
     if (strange_lines > 0)
       log_warning("obj: {} lines left out that begin with no word of the format, the first one is line {}",
                   strange_lines, first_strange);
@@ -169,21 +209,6 @@ struct ObjParser {
     DUBSAR_ASSIGN(mesh.triangles, triangulate_soup(mesh.positions, soup, "obj"));
     if (!text.ours()) join_equal_places(mesh);
     return {};
-  }
-
-  /// Most programs write 0 to 1, some 0 to 255.
-  void vertex_colors() {
-    double most = 0.0;
-    bool whole = true;
-    for (const glm::dvec3& color : colors)
-      for (int c = 0; c < 3; ++c)
-        if (std::isfinite(color[c])) most = std::max(most, color[c]), whole = whole && color[c] == std::round(color[c]);
-    const double scale = most > kNoShare || (most > 1.0 && whole) ? 1.0 : 255.0;
-    mesh.colors.resize(colors.size());
-    for (std::size_t v = 0; v < colors.size(); ++v)
-      for (int c = 0; c < 3; ++c)
-        mesh.colors[v][static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(
-            std::lround(std::isfinite(colors[v][c]) ? std::clamp(scale * colors[v][c], 0.0, 255.0) : 0.0));
   }
 
   /// One normal per vertex: its only one, or the mean direction of several.

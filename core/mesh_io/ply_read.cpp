@@ -4,78 +4,21 @@
 #include <limits>
 #include <optional>
 
-#include "core/base/numbers/bytes.h"
 #include "core/base/system/budget.h"
 #include "core/base/system/log.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/ply_header.h"
+#include "core/mesh_io/ply_values.h"
 #include "core/mesh_io/polygon_soup.h"
 #include "core/mesh_io/progress_step.h"
-#include "core/mesh_io/text_scanner.h"
+#include "core/mesh_io/vertex_colors.h"
 #include "core/mesh_io/vertex_places.h"
 
 namespace dubsar {
 namespace {
 
-/// Values of a binary body; every type fits a double exactly.
-template <bool kBigEndian>
-class BinaryValues {
- public:
-  explicit BinaryValues(std::string_view body) : reader_(body) {}
-  static std::size_t least_bytes(PlyScalar type) noexcept { return ply_scalar_bytes(type); }
-  double next(PlyScalar type) noexcept {
-    switch (type) {
-      case PlyScalar::kI8:
-        return get<std::int8_t>();
-      case PlyScalar::kU8:
-        return get<std::uint8_t>();
-      case PlyScalar::kI16:
-        return get<std::int16_t>();
-      case PlyScalar::kU16:
-        return get<std::uint16_t>();
-      case PlyScalar::kI32:
-        return get<std::int32_t>();
-      case PlyScalar::kU32:
-        return get<std::uint32_t>();
-      case PlyScalar::kF32:
-        return static_cast<double>(get<float>());
-      case PlyScalar::kF64:
-        break;
-    }
-    return get<double>();
-  }
-  void skip(PlyScalar type, std::uint64_t count) noexcept { reader_.take(count * ply_scalar_bytes(type)); }
-  std::uint64_t left() const noexcept { return reader_.left(); }
-  bool ok() const noexcept { return reader_.ok(); }
-
- private:
-  template <class T>
-  T get() noexcept {
-    return kBigEndian ? reader_.big<T>() : reader_.little<T>();
-  }
-  ByteReader reader_;
-};
-
-class AsciiValues {
- public:
-  explicit AsciiValues(std::string_view body) : scanner_(body) {}
-  static std::size_t least_bytes(PlyScalar) noexcept { return 1; }
-  double next(PlyScalar) noexcept {
-    double value = 0.0;
-    if (!scanner_.number(value)) ok_ = false;
-    return value;
-  }
-  void skip(PlyScalar type, std::uint64_t count) noexcept {
-    for (std::uint64_t i = 0; i < count && ok_; ++i) next(type);
-  }
-  std::uint64_t left() const noexcept { return scanner_.rest().size(); }
-  bool ok() const noexcept { return ok_; }
-
- private:
-  TextScanner scanner_;
-  bool ok_ = true;
-};
+constexpr std::uint64_t kPlyMostWaste = 4;  // bytes: line ends and the like
 
 enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kPart, kKMin, kKMax, kShape, kAo, kEvidence, kSlots };
 
@@ -83,6 +26,12 @@ std::optional<Slot> slot_of(const PlyProperty& property, bool ours) {
   static constexpr std::array<std::string_view, kSlots> kNames{"x",     "y",     "z",     "nx",   "ny",
                                                                "nz",    "red",   "green", "blue", "partition",
                                                                "k_min", "k_max", "shape", "ao",   "evidence"};
+  // Names of colours before "red" was agreed on, and of programs that never heard of it.
+  static constexpr std::array<std::array<std::string_view, 2>, 3> kOldColors{
+      {{"diffuse_red", "r"}, {"diffuse_green", "g"}, {"diffuse_blue", "b"}}};
+  for (std::size_t c = 0; c < kOldColors.size(); ++c)
+    for (const std::string_view name : kOldColors[c])
+      if (property.name == name && !property.list) return static_cast<Slot>(kRed + c);
   for (int slot = 0; slot < kSlots; ++slot) {
     if (property.name != kNames[static_cast<std::size_t>(slot)] || property.list) continue;
     if (slot >= kPart && !ours) return std::nullopt;  // a foreign "ao" or "shape" means something else
@@ -92,16 +41,6 @@ std::optional<Slot> slot_of(const PlyProperty& property, bool ours) {
 }
 
 bool is_label(const PlyProperty& property) { return property.name == "partition" && !property.list; }
-
-/// NaN counts as 0.
-std::uint8_t color_byte(double value) {
-  return static_cast<std::uint8_t>(value > 0.0 ? std::min(std::round(value), 255.0) : 0.0);
-}
-
-double color_scale(PlyScalar type) {
-  if (!ply_is_integer(type)) return 255.0;
-  return type == PlyScalar::kU16 ? 1.0 / 257.0 : 1.0;
-}
 
 template <class T>
 Result<T> checked_byte(double value, int highest, std::string_view name) {
@@ -119,19 +58,22 @@ struct PlyParser {
   std::int64_t skipped = 0;
   std::vector<PartitionId> labels{};  ///< of the vertices, from files without labels of the faces
   std::vector<glm::dvec3> places{};
+  std::uint64_t rest = 0;  ///< bytes behind the last element
 
   template <class Values>
   Result<void> vertices(const PlyElement& element, Values& values) {
     std::array<bool, kSlots> has{};
     std::vector<int> slots;
-    std::array<double, kSlots> scale;
-    scale.fill(1.0);
+    bool integers = true, bytes = true;  // colours are
+    std::vector<glm::vec3> wide;         // colours of other types
     for (const PlyProperty& property : element.properties) {
       const auto slot = slot_of(property, header.text.ours());
       slots.push_back(slot ? *slot : -1);
       if (!slot) continue;
       has[*slot] = true;
-      if (*slot >= kRed && *slot <= kBlue) scale[*slot] = color_scale(property.type);
+      if (*slot < kRed || *slot > kBlue) continue;
+      integers = integers && ply_is_integer(property.type);
+      bytes = bytes && property.type == PlyScalar::kU8;
     }
     if (!has[kX] || !has[kY] || !has[kZ]) return fail(ErrorKind::kBadData, "ply: vertices have no x, y, z properties");
     const bool normals = has[kNx] && has[kNy] && has[kNz];
@@ -141,7 +83,8 @@ struct PlyParser {
     DUBSAR_TRY(check_memory("ply", element.count * 72));
     places.resize(count);
     if (normals) mesh.normals.resize(count);
-    if (colors) mesh.colors.resize(count);
+    if (colors && bytes) mesh.colors.resize(count);
+    if (colors && !bytes) wide.resize(count);
     if (curvatures) mesh.k_min.resize(count), mesh.k_max.resize(count);
     if (has[kPart]) labels.resize(count);
     if (has[kShape]) mesh.shape.resize(count);
@@ -159,7 +102,7 @@ struct PlyParser {
         if (property.list) {
           DUBSAR_TRY(skip_list(property, values));
         } else if (const double value = values.next(property.type); slots[p] >= 0) {
-          row[static_cast<std::size_t>(slots[p])] = value * scale[static_cast<std::size_t>(slots[p])];
+          row[static_cast<std::size_t>(slots[p])] = value;
         }
       }
       if (!values.ok())
@@ -169,9 +112,10 @@ struct PlyParser {
       if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z))
         return fail(ErrorKind::kBadData, "ply: the position of vertex {} is not finite", v);
       if (normals) mesh.normals[v] = point(kNx);
-      if (colors)
-        for (int c = 0; c < 3; ++c)
-          mesh.colors[v][static_cast<std::size_t>(c)] = color_byte(row[static_cast<std::size_t>(kRed + c)]);
+      if (colors && bytes)
+        for (std::size_t c = 0; c < 3; ++c) mesh.colors[v][c] = static_cast<std::uint8_t>(row[kRed + c]);
+      else if (colors)
+        wide[v] = point(kRed);
       if (curvatures) {
         mesh.k_min[v] = static_cast<float>(row[kKMin]);
         mesh.k_max[v] = static_cast<float>(row[kKMax]);
@@ -191,6 +135,7 @@ struct PlyParser {
       }
       if (v % kProgressStep == 0 && progress.cancelled()) return cancelled_error();
     }
+    if (colors && !bytes) mesh.colors = color_bytes(wide, integers);
     return {};
   }
 
@@ -230,11 +175,19 @@ struct PlyParser {
     return {};
   }
 
+  static bool is_corners(const PlyProperty& property) {
+    return property.list && (property.name == "vertex_indices" || property.name == "vertex_index");
+  }
+  static Result<void> needs_corners(const PlyElement& element) {
+    if (element.count == 0 || std::any_of(element.properties.begin(), element.properties.end(), is_corners)) return {};
+    return fail(ErrorKind::kBadData,
+                "ply: {} items \"{}\" found without properties that are a list vertex_indices, expected one",
+                element.count, element.name);
+  }
+
   template <class Values>
   Result<void> faces(const PlyElement& element, Values& values) {
-    if (element.properties.empty() && element.count > 0)
-      return fail(ErrorKind::kBadData, "ply: {} faces without properties found, expected a list vertex_indices",
-                  element.count);
+    DUBSAR_TRY(needs_corners(element));
     const bool labelled = header.text.ours() && std::any_of(element.properties.begin(), element.properties.end(),
                                                             [](const PlyProperty& p) { return is_label(p); });
     for (std::uint64_t f = 0; f < element.count; ++f) {
@@ -246,7 +199,7 @@ struct PlyParser {
           DUBSAR_ASSIGN(label, checked_byte<PartitionId>(value, PartitionTable::kHighest, "partition"));
         } else if (!property.list) {
           values.next(property.type);
-        } else if (property.name == "vertex_indices" || property.name == "vertex_index") {
+        } else if (is_corners(property)) {
           DUBSAR_TRY(corners(property, values));
         } else {
           DUBSAR_TRY(skip_list(property, values));
@@ -264,16 +217,14 @@ struct PlyParser {
   /// Each vertex makes a triangle with the two before it, every other one turned; a negative one begins anew.
   template <class Values>
   Result<void> strips(const PlyElement& element, Values& values) {
-    if (element.properties.empty() && element.count > 0)
-      return fail(ErrorKind::kBadData, "ply: {} strips without properties found, expected a list vertex_indices",
-                  element.count);
+    DUBSAR_TRY(needs_corners(element));
     for (std::uint64_t s = 0; s < element.count; ++s) {
       for (const PlyProperty& property : element.properties) {
         if (!property.list) {
           values.next(property.type);
           continue;
         }
-        if (property.name != "vertex_indices" && property.name != "vertex_index") {
+        if (!is_corners(property)) {
           DUBSAR_TRY(skip_list(property, values));
           continue;
         }
@@ -351,6 +302,7 @@ struct PlyParser {
       }
       progress.end();
     }
+    rest = values.left();
     return {};
   }
 };
@@ -380,6 +332,13 @@ Result<TriMesh> parse_ply(std::string_view bytes, Progress& progress) {
       DUBSAR_TRY(parser.body(BinaryValues<true>(body)));
       break;
   }
+  if (parser.skipped > 0 && parser.soup.sizes.empty())
+    return fail(ErrorKind::kBadData,
+                "ply: {} faces found of which none has 3 corners, expected triangles; the counts in the header are not "
+                "those of the data, export it again",
+                parser.skipped);
+  if (parser.rest > kPlyMostWaste)
+    log_warning("ply: {} bytes behind the last element left out: the header announces less than there is", parser.rest);
   if (parser.skipped > 0) log_warning("ply: {} faces with fewer than 3 corners left out", parser.skipped);
   DUBSAR_TRY(header.text.apply(parser.mesh));
   set_places(parser.mesh, parser.places);

@@ -6,8 +6,10 @@
 
 #include "core/base/files/buffered_writer.h"
 #include "core/base/system/budget.h"
+#include "core/base/system/log.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
+#include "core/mesh_io/no_mesh.h"
 #include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/text_scanner.h"
 #include "core/mesh_io/vertex_places.h"
@@ -20,17 +22,31 @@ constexpr std::string_view kMaker = "dubsar STL, units ";
 
 bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
+/// What cannot be a triangle that was not counted: less than one, or zeros.
+bool is_waste(std::string_view rest) {
+  return rest.size() < kFacetBytes || rest.find_first_not_of('\0') == std::string_view::npos;
+}
+
 Result<TriMesh> parse_binary(std::string_view bytes, Progress& progress) {
   ByteReader reader(bytes);
   const std::string_view header = reader.take(kHeaderBytes);
   const auto count = reader.little<std::uint32_t>();
-  if (!reader.ok() || reader.left() != std::size_t{count} * kFacetBytes)
-    return fail(ErrorKind::kBadData, "stl: {} triangles announced, so {} bytes expected, but the file has {}", count,
-                kHeaderBytes + 4 + std::size_t{count} * kFacetBytes, bytes.size());
+  const std::size_t expected = std::size_t{count} * kFacetBytes;
+  if (is_plain_text(bytes.substr(0, kHeaderBytes + 4)))
+    return fail(ErrorKind::kBadData,
+                "stl: a text that does not begin with \"solid\" found, expected an STL file; fetch the file itself");
+  if (!reader.ok() || reader.left() < expected || !is_waste(bytes.substr(kHeaderBytes + 4 + expected)))
+    return fail(ErrorKind::kBadData,
+                "stl: {} triangles announced, so {} bytes expected, but the file has {}; it is cut or damaged, fetch "
+                "or export it again",
+                count, kHeaderBytes + 4 + expected, bytes.size());
+  if (const std::size_t waste = reader.left() - expected; waste > 0)
+    log_warning("stl: {} bytes behind the last triangle left out", waste);
   DUBSAR_TRY(check_memory("stl", std::uint64_t{count} * 40));
   progress.begin("read stl", count, "triangle");
   TriMesh mesh;
   PointWelder welder;
+  std::size_t numbered = 0;
   mesh.triangles.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
     reader.take(12);
@@ -40,13 +56,15 @@ Result<TriMesh> parse_binary(std::string_view bytes, Progress& progress) {
       if (!finite(p)) return fail(ErrorKind::kBadData, "stl: a corner of triangle {} is not finite", t);
       id = welder.id(p);
     }
-    reader.take(2);
+    numbered += reader.little<std::uint16_t>() != 0;
     if ((t + 1) % kProgressStep == 0) {
       progress.advance(kProgressStep);
       if (progress.cancelled()) return cancelled_error();
     }
   }
   mesh.positions = std::move(welder.points());
+  if (numbered > 0)
+    log_warning("stl: the numbers of {} triangles left out; some programs write colours there", numbered);
   if (header.starts_with(kMaker)) {
     const std::string_view rest = header.substr(kMaker.size());
     if (rest.starts_with("mm;") && rest.find("unknown") == std::string_view::npos)
@@ -84,6 +102,8 @@ class StlWords {
 
 Result<TriMesh> parse_ascii(std::string_view bytes, Progress& progress) {
   std::vector<glm::dvec3> corners;
+  // Zeros and the end mark of old systems, of writers that fill a block.
+  while (!bytes.empty() && (bytes.back() == '\0' || bytes.back() == '\x1A')) bytes.remove_suffix(1);
   StlWords words(bytes);
   const auto broken = [&](std::string_view found, std::string_view expected) {
     return fail(ErrorKind::kBadData, "stl: \"{}\" found in triangle {}, expected {}",

@@ -8,6 +8,7 @@ namespace dubsar {
 namespace {
 
 constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
+constexpr std::string_view kUtf32Little("\xFF\xFE\0\0", 4), kUtf32Big("\0\0\xFE\xFF", 4);
 constexpr std::size_t kLooked = 64;  // bytes at the beginning
 
 void append_utf8(std::string& out, std::uint32_t code) {
@@ -50,6 +51,17 @@ std::string from_utf16(std::string_view bytes, bool big) {
   return out;
 }
 
+std::string from_utf32(std::string_view bytes, bool big) {
+  std::string out;
+  out.reserve(bytes.size() / 4);
+  for (std::size_t at = 0; at + 3 < bytes.size(); at += 4) {
+    std::uint32_t code = 0;
+    for (std::size_t i = 0; i < 4; ++i) code = code << 8 | static_cast<std::uint8_t>(bytes[at + (big ? i : 3 - i)]);
+    append_utf8(out, code > 0x10FFFF || (code >= 0xD800 && code < 0xE000) ? 0xFFFD : code);
+  }
+  return out;
+}
+
 /// Text of one-byte letters, each with a 0 behind it (or before it).
 bool every_other_zero(std::string_view bytes, std::size_t first) {
   if (bytes.size() < 8 || bytes.size() % 2 != 0) return false;
@@ -64,6 +76,8 @@ bool every_other_zero(std::string_view bytes, std::size_t first) {
 std::string utf8_bytes(std::string bytes) {
   const std::string_view all(bytes);
   if (all.starts_with(kUtf8Mark)) return bytes.substr(kUtf8Mark.size());
+  if (all.starts_with(kUtf32Little)) return from_utf32(all.substr(4), false);
+  if (all.starts_with(kUtf32Big)) return from_utf32(all.substr(4), true);
   if (all.starts_with("\xFF\xFE")) return from_utf16(all.substr(2), false);
   if (all.starts_with("\xFE\xFF")) return from_utf16(all.substr(2), true);
   if (every_other_zero(all, 1)) return from_utf16(all, false);

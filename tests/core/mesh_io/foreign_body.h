@@ -13,7 +13,7 @@
 
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/tri_mesh.h"
-#include "core/mesh_io/glb_words.h"
+#include "core/mesh_io/glb/glb_words.h"
 
 namespace dubsar::foreign {
 

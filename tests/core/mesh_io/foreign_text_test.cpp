@@ -159,7 +159,7 @@ TEST_F(ForeignText, PagesOfTheWebAreNoSurfaces) {
     for (const char* name : {"a.obj", "a.stl", "a.ply", "a.glb"})
       EXPECT_THAT(says(name, page), HasSubstr("web page")) << name;
   EXPECT_THAT(says("a.obj", "Not Found\n"), HasSubstr("\"Not Found\" found, expected a line of an OBJ file"));
-  EXPECT_THAT(says("a.obj", "{\"error\": 404}"), HasSubstr("line 1"));
+  EXPECT_THAT(says("a.obj", "{\"error\": 404}"), HasSubstr("JSON found"));
   EXPECT_THAT(says("a.obj", "# only a comment\n"), HasSubstr("without a vertex"));
   EXPECT_THAT(says("a.obj", "g nothing\n"), HasSubstr("without a vertex"));
   // Words of the format that carry no shape, and strange ones behind vertices, leave the surface.

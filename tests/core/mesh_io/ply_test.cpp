@@ -185,7 +185,7 @@ TEST_F(Ply, LiesAreRefusedWithASentence) {
       says(fmt::format("ply\nformat {} 1.0\nelement vertex 0\n{}element {} 18446744073709551615\nend_header\n", format,
                        xyz, element));  // comes back: 2^64 - 1 items of no bytes take no time
   EXPECT_THAT(says("ply\nformat ascii 1.0\nelement vertex 0\n" + xyz + "element face 7\nend_header\n"),
-              HasSubstr("7 faces without properties"));
+              HasSubstr("7 items \"face\" found without properties"));
   EXPECT_THAT(says("ply\nformat ascii 1.0\nelement tristrips 1\n" + face), HasSubstr("no vertex element"));
   EXPECT_THAT(says("ply\nformat ascii 2.0\n"), HasSubstr("format"));
   EXPECT_THAT(says("ply\nformat ascii 1.0\nelement vertex 1\n" + xyz), HasSubstr("does not end"));

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/mesh/tri_mesh.h"
-#include "core/mesh_io/glb_photo.h"
+#include "core/mesh_io/glb/glb_photo.h"
 
 namespace dubsar {
 

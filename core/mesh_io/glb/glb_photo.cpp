@@ -1,4 +1,4 @@
-#include "core/mesh_io/glb_photo.h"
+#include "core/mesh_io/glb/glb_photo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -93,8 +93,9 @@ const Image* GlbPhotos::photo(std::uint64_t texture) {
   if (!image) return nullptr;
   const auto [found, made] = photos_.try_emplace(*number);
   if (!made) return found->second ? &*found->second : nullptr;
-  const auto bytes = glb_member(*image, "bufferView") ? data_.view(glb_number(*image, "bufferView", std::nullopt))
-                                                      : Result<std::string_view>(broken_glb("it lies in another file"));
+  const auto bytes = glb_member(*image, "bufferView")
+                         ? data_.view(glb_number(*image, "bufferView", std::nullopt))
+                         : Result<std::string_view>(broken_glb("it lies in another file or is written as text"));
   Result<Image> read = tl::unexpected<Error>(
       bytes ? Error{ErrorKind::kBadData, "its kind cannot be read, expected JPEG or PNG"} : bytes.error());
   if (bytes) {

@@ -1,4 +1,4 @@
-#include "core/mesh_io/glb_parts.h"
+#include "core/mesh_io/glb/glb_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "core/base/files/atomic_file.h"
 #include "core/base/text/json_text.h"
-#include "core/mesh_io/glb_words.h"
+#include "core/mesh_io/glb/glb_words.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/mesh_io/mesh_text.h"
 

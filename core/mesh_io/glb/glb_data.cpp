@@ -1,8 +1,9 @@
-#include "core/mesh_io/glb_data.h"
+#include "core/mesh_io/glb/glb_data.h"
 
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "core/base/system/budget.h"
@@ -46,6 +47,10 @@ const Json* glb_member(const Json& object, const char* key) {
 std::optional<std::uint64_t> glb_number(const Json& object, const char* key, std::optional<std::uint64_t> otherwise) {
   const Json* value = glb_member(object, key);
   if (!value) return otherwise;
+  // Some writers hold every number in floating point.
+  if (value->is_number_float() && value->get<double>() >= 0 && value->get<double>() <= static_cast<double>(kMost) &&
+      value->get<double>() == std::floor(value->get<double>()))
+    return static_cast<std::uint64_t>(value->get<double>());
   if (!value->is_number_unsigned() || value->get<std::uint64_t>() > kMost) return std::nullopt;
   return value->get<std::uint64_t>();
 }
@@ -100,7 +105,15 @@ double GlbAccessor::scale() const noexcept {
 
 /// The bytes that byteOffset and byteLength of buffer 0 name.
 Result<std::string_view> GlbData::raw_bytes(const Json& holder) {
-  if (glb_number(holder, "buffer", std::nullopt) != 0) return broken_glb("data outside the file, expected buffer 0");
+  const auto number = glb_number(holder, "buffer", std::nullopt);
+  const Json* const buffer = glb_element(root_, "buffers", number);
+  if (const Json* const uri = buffer ? glb_member(*buffer, "uri") : nullptr; uri && uri->is_string()) {
+    const std::string text = uri->get<std::string>();
+    return broken_glb(fmt::format(
+        "the numbers {} found, expected them in the binary chunk; export it as GLB, with all data inside",
+        text.starts_with("data:") ? "as text (a data URI)" : "in another file (" + text.substr(0, 80) + ")"));
+  }
+  if (number != 0) return broken_glb("data outside the file, expected buffer 0");
   const auto offset = glb_number(holder, "byteOffset", 0), length = glb_number(holder, "byteLength", std::nullopt);
   if (!offset || !length) return broken_glb("a buffer view is broken");
   if (*offset > bin_.size() || *length > bin_.size() - *offset)
@@ -180,6 +193,12 @@ Result<void> GlbData::fill_sparse(GlbAccessor& accessor, std::uint64_t item_byte
   accessor.bytes = filled_.emplace_back(std::move(all));
   accessor.stride = item_bytes;
   return {};
+}
+
+bool GlbData::has_bytes(const Json* index) const {
+  const Json* const json =
+      index && index->is_number_unsigned() ? glb_element(root_, "accessors", index->get<std::uint64_t>()) : nullptr;
+  return json && (glb_member(*json, "bufferView") || glb_member(*json, "sparse"));
 }
 
 Result<GlbAccessor> GlbData::accessor(const Json* index) {

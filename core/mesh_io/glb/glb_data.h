@@ -51,6 +51,8 @@ class GlbData {
   const nlohmann::json& root() const noexcept { return root_; }
   /// kBadData: no such accessor, or one that lies outside of the data; kTryAgain: memory for what has to be unpacked.
   Result<GlbAccessor> accessor(const nlohmann::json* index);
+  /// Whether an accessor of this number exists and names numbers: of Draco they do not.
+  bool has_bytes(const nlohmann::json* index) const;
   /// All bytes of a buffer view.
   Result<std::string_view> view(std::optional<std::uint64_t> index);
 

@@ -5,7 +5,7 @@
 
 #include "core/base/files/buffered_writer.h"
 #include "core/base/text/json_text.h"
-#include "core/mesh_io/glb_parts.h"
+#include "core/mesh_io/glb/glb_parts.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 #include "core/mesh_io/mesh_text.h"

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <limits>
@@ -11,11 +10,12 @@
 #include "core/base/system/budget.h"
 #include "core/base/system/log.h"
 #include "core/base/text/json_text.h"
-#include "core/mesh_io/glb_data.h"
-#include "core/mesh_io/glb_words.h"
+#include "core/mesh_io/glb/glb_data.h"
+#include "core/mesh_io/glb/glb_nodes.h"
+#include "core/mesh_io/glb/glb_words.h"
+#include "core/mesh_io/glb/painted_mesh.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_text.h"
-#include "core/mesh_io/painted_mesh.h"
 #include "core/mesh_io/vertex_places.h"
 
 namespace dubsar {
@@ -26,21 +26,11 @@ constexpr std::uint64_t kMostRepeats = 16;       // vertices for each byte of th
 constexpr std::uint64_t kBytesAVertex = 160;     // of memory, while it is read
 constexpr int kPoints = 0, kTriangles = 4, kStrip = 5, kFan = 6;
 
-bool read_numbers(const Json* array, double* out, std::size_t count) {
-  if (!array || !array->is_array() || array->size() != count) return false;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!(*array)[i].is_number()) return false;
-    out[i] = (*array)[i].get<double>();
-  }
-  return true;
-}
-
-glm::dmat4 moved_by(const double* t, const double* r, const double* s) {
-  glm::dmat4 result = glm::mat4_cast(glm::dquat(r[3], r[0], r[1], r[2]));
-  for (int c = 0; c < 3; ++c) result[c] *= s[c];
-  result[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
-  return result;
-}
+/// Where a mesh stands, and how far it is morphed.
+struct Placed {
+  glm::dmat4 transform;
+  const std::vector<double>& weights;
+};
 
 struct Parser {
   GlbData data;
@@ -50,31 +40,54 @@ struct Parser {
   PaintedMesh mesh{};
   std::vector<glm::dvec3> cloud{};  ///< of points that no triangle joins
   bool ours = false, all_normals = true, any_color = false;
-  std::uint64_t corners = 0, lines = 0;
+  std::uint64_t corners = 0, lines = 0, skins = 0, checked_bytes = 0;
 
   explicit Parser(Json root, std::string_view bin, Progress& told, std::uint64_t bytes)
       : data(std::move(root), bin), photos(data), progress(told), file_bytes(bytes) {}
 
-  Result<std::vector<glm::dvec3>> places(const GlbAccessor& positions, const glm::dmat4& transform) {
+  /// Asks the system, where a file of many small meshes would ask it for each, only now and then.
+  Result<void> check_room(std::uint64_t bytes) {
+    if (bytes <= checked_bytes) return {};
+    checked_bytes = bytes + bytes / 4;
+    return check_memory("glb", bytes);
+  }
+
+  /// As far as the node is morphed, before it is moved.
+  Result<void> morph(const Json& json, const std::vector<double>& weights, const char* name,
+                     std::vector<glm::dvec3>& values) {
+    const Json* const targets = glb_member(json, "targets");
+    for (std::size_t t = 0; targets && targets->is_array() && t < std::min(weights.size(), targets->size()); ++t) {
+      const Json* const index = weights[t] != 0.0 ? glb_member((*targets)[t], name) : nullptr;
+      if (!index) continue;
+      DUBSAR_ASSIGN(const GlbAccessor moved, data.accessor(index));
+      if (moved.count != values.size() || moved.parts != 3) return broken_glb("a morph target is not one per vertex");
+      for (std::uint64_t v = 0; v < moved.count; ++v)
+        values[v] += weights[t] * glm::dvec3(moved.at(v, 0), moved.at(v, 1), moved.at(v, 2));
+    }
+    return {};
+  }
+
+  Result<std::vector<glm::dvec3>> places(const Json& json, const GlbAccessor& positions, const Placed& placed) {
     if (positions.parts != 3 || positions.component == 5125)
       return broken_glb("positions are not vectors of 3 numbers");
     // Nodes may share a mesh; a small file must not become an endless one.
     const std::uint64_t all = mesh.places.size() + cloud.size() + positions.count;
     if (all > kMostRepeats * file_bytes) return broken_glb("the node tree repeats meshes too often");
-    DUBSAR_TRY(check_memory("glb", kBytesAVertex * all));
+    DUBSAR_TRY(check_room(kBytesAVertex * all));
     std::vector<glm::dvec3> out;
-    for (std::uint64_t v = 0; v < positions.count; ++v) {
-      const glm::dvec4 p(positions.at(v, 0), positions.at(v, 1), positions.at(v, 2), 1.0);
-      const glm::dvec3 moved = glm::dvec3(transform * p) * (ours ? 1.0 : kMmPerGltfUnit);
-      const glm::vec3 held(moved);
+    for (std::uint64_t v = 0; v < positions.count; ++v)
+      out.emplace_back(positions.at(v, 0), positions.at(v, 1), positions.at(v, 2));
+    DUBSAR_TRY(morph(json, placed.weights, "POSITION", out));
+    for (glm::dvec3& p : out) {
+      p = glm::dvec3(placed.transform * glm::dvec4(p, 1.0)) * (ours ? 1.0 : kMmPerGltfUnit);
+      const glm::vec3 held(p);
       if (!std::isfinite(held.x) || !std::isfinite(held.y) || !std::isfinite(held.z))
-        return broken_glb("a position is not finite");
-      out.push_back(moved);
+        return broken_glb("a position is not finite, or beyond 3e38 mm");
     }
     return out;
   }
 
-  Result<void> normals(const Json* index, std::uint64_t count, const glm::dmat4& transform) {
+  Result<void> normals(const Json& json, const Json* index, std::uint64_t count, const Placed& placed) {
     mesh.normals.resize(mesh.places.size(), glm::dvec3(0.0));
     if (!index) {
       all_normals = false;
@@ -83,9 +96,12 @@ struct Parser {
     DUBSAR_ASSIGN(const GlbAccessor read, data.accessor(index));
     if (read.count != count || read.parts != 3 || (!read.floats() && !read.normalized))
       return broken_glb("normals are not one vector per vertex");
-    const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(transform)));
+    const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(placed.transform)));
+    std::vector<glm::dvec3> out;
+    for (std::uint64_t v = 0; v < count; ++v) out.emplace_back(read.at(v, 0), read.at(v, 1), read.at(v, 2));
+    DUBSAR_TRY(morph(json, placed.weights, "NORMAL", out));
     for (std::uint64_t v = 0; v < count; ++v) {
-      const glm::dvec3 n(read.at(v, 0), read.at(v, 1), read.at(v, 2)), turned = ours ? n : turn * n;
+      const glm::dvec3 turned = ours ? out[v] : turn * out[v];
       const double length = ours && read.floats() ? 1.0 : glm::length(turned);
       if (length > 0.0 && std::isfinite(length)) mesh.normals[mesh.places.size() - count + v] = turned / length;
     }
@@ -131,7 +147,7 @@ struct Parser {
     corners += all;
     if (corners > 4 * kMostRepeats * file_bytes) return broken_glb("the node tree repeats meshes too often");
     if (mode == kTriangles && all % 3 != 0) return broken_glb("the number of corners is not a multiple of 3");
-    DUBSAR_TRY(check_memory("glb", 24 * (mesh.triangles.size() + all)));
+    DUBSAR_TRY(check_room(kBytesAVertex * mesh.places.size() + 24 * (mesh.triangles.size() + all)));
     const std::uint64_t made = mode == kTriangles ? all / 3 : all < 3 ? 0 : all - 2;
     for (std::uint64_t t = 0; t < made; ++t) {
       std::array<std::uint64_t, 3> at{t, t + 1 + t % 2, t + 2 - t % 2};
@@ -154,7 +170,7 @@ struct Parser {
     return {};
   }
 
-  Result<void> primitive(const Json& json, const glm::dmat4& transform, PartitionId partition) {
+  Result<void> primitive(const Json& json, const Placed& placed, PartitionId partition) {
     const auto mode = glb_number(json, "mode", kTriangles);
     if (!mode || *mode > kFan) return broken_glb("a primitive of no known kind found, expected triangles");
     const Json* const attributes = glb_member(json, "attributes");
@@ -165,64 +181,20 @@ struct Parser {
       return {};
     }
     if (const Json* const packed = glb_extension(json, "KHR_draco_mesh_compression");
-        packed && !glb_member(*attributes, "POSITION"))
+        packed && !data.has_bytes(glb_member(*attributes, "POSITION")))
       return broken_glb("KHR_draco_mesh_compression found, expected data without; convert it");
     DUBSAR_ASSIGN(const GlbAccessor positions, data.accessor(glb_member(*attributes, "POSITION")));
-    DUBSAR_ASSIGN(const std::vector<glm::dvec3> moved, places(positions, transform));
+    DUBSAR_ASSIGN(const std::vector<glm::dvec3> moved, places(json, positions, placed));
     if (kind == kPoints) {
       cloud.insert(cloud.end(), moved.begin(), moved.end());
       return {};
     }
     mesh.places.insert(mesh.places.end(), moved.begin(), moved.end());
-    DUBSAR_TRY(normals(glb_member(*attributes, "NORMAL"), positions.count, transform));
+    DUBSAR_TRY(normals(json, glb_member(*attributes, "NORMAL"), positions.count, placed));
     DUBSAR_TRY(paint(json, *attributes, positions.count));
     // A node that mirrors turns what was counter-clockwise.
-    const bool mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
+    const bool mirrored = glm::determinant(glm::dmat3(placed.transform)) < 0.0;
     return triangles(json, positions.count, kind, mirrored, partition);
-  }
-
-  Result<glm::dmat4> node_matrix(const Json& node) {
-    double m[16], t[3] = {0, 0, 0}, r[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-    if (const Json* matrix = glb_member(node, "matrix")) {
-      if (!read_numbers(matrix, m, 16)) return broken_glb("a node matrix is broken");
-      glm::dmat4 result;
-      for (int c = 0; c < 16; ++c) result[c / 4][c % 4] = m[c];
-      return result;
-    }
-    const auto broken = [&](const char* key, double* out, std::size_t count) {
-      const Json* const value = glb_member(node, key);
-      return value && !read_numbers(value, out, count);
-    };
-    if (broken("translation", t, 3) || broken("rotation", r, 4) || broken("scale", s, 3))
-      return broken_glb("a node transform is broken");
-    return moved_by(t, r, s);
-  }
-
-  /// Where a node's mesh stands: once, or as often as EXT_mesh_gpu_instancing says.
-  Result<std::vector<glm::dmat4>> instances(const Json& node, const glm::dmat4& transform) {
-    const Json* const many = glb_extension(node, "EXT_mesh_gpu_instancing");
-    const Json* const attributes = many ? glb_member(*many, "attributes") : nullptr;
-    if (!attributes) return std::vector<glm::dmat4>{transform};
-    std::array<std::optional<GlbAccessor>, 3> read;
-    constexpr std::array kNames{"TRANSLATION", "ROTATION", "SCALE"};
-    constexpr std::array<std::uint64_t, 3> kParts{3, 4, 3};
-    std::optional<std::uint64_t> count;
-    for (std::size_t a = 0; a < read.size(); ++a) {
-      const Json* const index = glb_member(*attributes, kNames[a]);
-      if (!index) continue;
-      DUBSAR_ASSIGN(read[a], data.accessor(index));
-      if (read[a]->parts != kParts[a] || (count && *count != read[a]->count))
-        return broken_glb("instances have not one place each");
-      count = read[a]->count;
-    }
-    std::vector<glm::dmat4> out;
-    for (std::uint64_t i = 0; i < count.value_or(0); ++i) {
-      std::array<std::array<double, 4>, 3> v{{{0, 0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1, 0}}};
-      for (std::size_t a = 0; a < read.size(); ++a)
-        for (std::uint64_t k = 0; read[a] && k < kParts[a]; ++k) v[a][k] = read[a]->at(i, k);
-      out.push_back(transform * moved_by(v[0].data(), v[1].data(), v[2].data()));
-    }
-    return out;
   }
 
   /// Depth first, children in order; every node once.
@@ -233,13 +205,11 @@ struct Parser {
       bool root;
     };
     const Json& root = data.root();
-    const Json* scene = glb_element(root, "scenes", glb_number(root, "scene", 0));
+    DUBSAR_ASSIGN(const Json roots, glb_roots(root));
     const Json* all = glb_member(root, "nodes");
-    if (!scene || !all || !all->is_array()) return broken_glb("no scene with nodes");
     std::vector<Visit> stack;
     std::vector<bool> seen(all->size());
-    const auto push = [&](const Json& holder, const char* key, const glm::dmat4& parent, bool top) {
-      const Json* list = glb_member(holder, key);
+    const auto push = [&](const Json* list, const glm::dmat4& parent, bool top) {
       if (!list) return true;
       if (!list->is_array()) return false;
       for (auto it = list->rbegin(); it != list->rend(); ++it) {
@@ -251,16 +221,16 @@ struct Parser {
       }
       return true;
     };
-    if (!push(*scene, "nodes", glm::dmat4(1.0), true)) return broken_glb("the scene names nodes that do not exist");
+    if (!push(&roots, glm::dmat4(1.0), true)) return broken_glb("the scene names nodes that do not exist");
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
       if (progress.cancelled()) return cancelled_error();
       const Json& node = (*all)[visit.node];
-      DUBSAR_ASSIGN(const glm::dmat4 local, node_matrix(node));
+      DUBSAR_ASSIGN(const glm::dmat4 local, glb_node_matrix(node));
       // The root of our own files turns millimetres into metres; what is below keeps millimetres.
       const glm::dmat4 transform = ours && visit.root ? glm::dmat4(1.0) : visit.parent * local;
-      if (!push(node, "children", transform, false)) return broken_glb("the node tree is not a tree");
+      if (!push(glb_member(node, "children"), transform, false)) return broken_glb("the node tree is not a tree");
       if (!glb_member(node, "mesh")) continue;
       const Json* shape = glb_element(root, "meshes", glb_number(node, "mesh", std::nullopt));
       const Json* primitives = shape ? glb_member(*shape, "primitives") : nullptr;
@@ -268,9 +238,13 @@ struct Parser {
       const Json* extras = glb_member(node, "extras");
       const std::uint64_t id = ours && extras ? glb_number(*extras, "partition", 0).value_or(0) : 0;
       const auto partition = static_cast<PartitionId>(id <= PartitionTable::kHighest ? id : 0);
-      DUBSAR_ASSIGN(const std::vector<glm::dmat4> where, instances(node, transform));
-      for (const glm::dmat4& at : where)
-        for (const Json& json : *primitives) DUBSAR_TRY(primitive(json, at, partition));
+      skins += glb_member(node, "skin") != nullptr;
+      const std::vector<double> weights = glb_weights(node, *shape);
+      DUBSAR_ASSIGN(const std::vector<glm::dmat4> where, glb_instances(data, node, transform));
+      for (const glm::dmat4& at : where) {
+        if (progress.cancelled()) return cancelled_error();
+        for (const Json& json : *primitives) DUBSAR_TRY(primitive(json, {at, weights}, partition));
+      }
     }
     return {};
   }
@@ -303,7 +277,9 @@ Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress, const Mesh
   if (!reader.ok() || magic != kGlbMagic) return broken_glb("the file does not start with \"glTF\"");
   if (version != 2) return fail(ErrorKind::kBadData, "glb: version {} found, expected 2", version);
   if (length != bytes.size())
-    return fail(ErrorKind::kBadData, "glb: {} bytes announced, {} found", length, bytes.size());
+    return fail(ErrorKind::kBadData,
+                "glb: {} bytes announced, {} found; it is cut or damaged, fetch or export it again", length,
+                bytes.size());
   const auto json_bytes = reader.little<std::uint32_t>(), json_type = reader.little<std::uint32_t>();
   const std::string_view text = reader.take(json_bytes);
   if (!reader.ok() || json_type != kGlbJsonChunk) return broken_glb("the first chunk is not a whole JSON chunk");
@@ -325,6 +301,9 @@ Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress, const Mesh
   parser.ours = lines.ours();
   progress.begin("read glb", 0, "part");
   DUBSAR_TRY(parser.nodes());
+  if (parser.skins > 0)
+    log_warning("glb: {} surfaces with a skeleton found, which bends nothing here: they stand as before it",
+                parser.skins);
   if (parser.lines > 0) log_warning("glb: {} sets of lines left out, expected triangles", parser.lines);
   PaintedMesh& painted = parser.mesh;
   if (options.photo_detail) refine_to_photo(painted, kMostRefined);

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/image_io/image.h"
-#include "core/mesh_io/glb_data.h"
+#include "core/mesh_io/glb/glb_data.h"
 
 namespace dubsar {
 

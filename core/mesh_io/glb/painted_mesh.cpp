@@ -1,4 +1,4 @@
-#include "core/mesh_io/painted_mesh.h"
+#include "core/mesh_io/glb/painted_mesh.h"
 
 #include <algorithm>
 #include <cmath>
