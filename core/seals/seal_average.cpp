@@ -10,9 +10,7 @@ namespace dubsar {
 namespace {
 
 constexpr int kPlacingRounds = 2;
-constexpr int kWeightRounds = 3;
-constexpr double kAgreeMm = 0.8;              // deviation of the window in which impressions are compared: a limb
-constexpr double kLooseSquare = 0.05 * 0.05;  // mm2, as the loss of refined()
+constexpr double kBelowMm = 0.1;                            // noise of a scan is a third of that
 constexpr double kTurnOffMm = 0.8, kFinerTurnStepMm = 0.1;  // the search has cells of .4 mm
 constexpr double kWornShare = 0.15;  // of the most figures that another impression shows there: it is worn level
 
@@ -123,37 +121,21 @@ SealImpression mean_of(const std::vector<SealView>& views, std::size_t without, 
     std::nth_element(level.begin(), at, level.end());
     noise = std::max(noise, 0.3f * *at);
   }
-  std::vector<std::vector<float>> prior(of.size(), std::vector<float>(canvas.cells())), weight;
-  for (std::size_t v = 0; v < of.size(); ++v)
+  std::vector<float> all(canvas.cells());
+  for (const SealView* view : of)
     for (std::size_t k = 0; k < most.size(); ++k) {
-      // Nothing raises clay later: what shows more is whole.
-      const float share = (of[v]->over.figure[k] + noise) / (most[k] + noise);
-      prior[v][k] = of[v]->over.shown[k] * share * share;
+      // Nothing raises clay later: what shows more is whole. What lies below the ground is at the rim of a break.
+      const float share = (view->over.figure[k] + noise) / (most[k] + noise),
+                  below = std::min(0.0f, view->over.mm[k]) / static_cast<float>(kBelowMm),
+                  weight = view->over.shown[k] * share * std::exp(-below * below);
+      out.mm[k] += weight * view->over.mm[k];
+      out.raised[k] += weight * view->over.raised[k];
+      all[k] += weight;
     }
-  weight = prior;
-  for (int round = 0; round <= kWeightRounds; ++round) {
-    for (std::size_t k = 0; k < most.size(); ++k) {
-      float sum = 0.0f, all = 0.0f, raised = 0.0f;
-      for (std::size_t v = 0; v < of.size(); ++v) {
-        sum += weight[v][k] * of[v]->over.mm[k];
-        raised += weight[v][k] * of[v]->over.raised[k];
-        all += weight[v][k];
-      }
-      out.mm[k] = all > 0.0f ? sum / all : 0.0f;
-      out.raised[k] = all > 0.0f ? raised / all : 0.0f;
-    }
-    if (round == kWeightRounds) break;
-    for (std::size_t v = 0; v < of.size(); ++v) {
-      std::vector<float> rest2(most.size());
-      for (std::size_t k = 0; k < most.size(); ++k)
-        rest2[k] = (of[v]->over.mm[k] - out.mm[k]) * (of[v]->over.mm[k] - out.mm[k]);
-      const std::vector<float> apart =
-          weighted_blur(rest2, of[v]->over.shown, canvas.width, canvas.height, kAgreeMm / canvas.step_mm);
-      for (std::size_t k = 0; k < most.size(); ++k) {
-        const float t = 1.0f + apart[k] / static_cast<float>(kLooseSquare);
-        weight[v][k] = prior[v][k] / (t * t);
-      }
-    }
+  for (std::size_t k = 0; k < most.size(); ++k) {
+    if (!(all[k] > 0.0f)) continue;
+    out.mm[k] /= all[k];
+    out.raised[k] /= all[k];
   }
   if (seen_by) seen_by->assign(canvas.cells(), 0.0f);
   for (std::size_t k = 0; k < most.size(); ++k)

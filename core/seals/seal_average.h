@@ -23,7 +23,7 @@ struct AverageOptions {
 
 /// Impressions of one step. Each place is the mean of what lies there, folded by the turn: what shows figures counts
 /// by its figures against those of the others (worn places have none), what is broken away does not count, and what
-/// contradicts the mean loses its weight (bounded, in rounds). Each impression is then laid anew on the mean of the
+/// lies below the ground hardly. Each impression is then laid anew on the mean of the
 /// others (refined()). Deterministic, the same for any number of threads. kUsage-like conditions are the caller's:
 /// there is at least one impression.
 SealAverage average_seal(const std::vector<SealImpression>& impressions, const AverageOptions& options = {});

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -96,6 +97,7 @@ constexpr int kTruthColumns = static_cast<int>(phantom::SealRelief::kTurnMm / kT
               kTruthRows = static_cast<int>(phantom::SealRelief::kHeightMm / kTruthMm);
 struct SealGrid {
   std::vector<double> sum = std::vector<double>(kTruthColumns * kTruthRows), count = sum, truth = sum, shown = sum;
+  std::array<std::vector<double>, 3> shown_by{sum, sum, sum};
   static std::size_t at(const phantom::SealPlace& p) {
     return static_cast<std::size_t>(std::clamp(static_cast<int>(p.y_mm / kTruthMm), 0, kTruthRows - 1)) *
                kTruthColumns +
@@ -174,6 +176,17 @@ JudgedSeal judge_seal(const phantom::Phantom& truth, std::size_t sealing, const 
   return out;
 }
 
+/// Error over the whole seal of who knows exactly what is shown, and takes the mean for what is not.
+double least_error(const SealGrid& any, const std::vector<double>& shown) {
+  double mean = 0.0, cells = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < any.count.size(); ++k)
+    if (any.count[k] > 0.0) mean += any.truth[k], cells += 1.0;
+  mean /= cells;
+  for (std::size_t k = 0; k < any.count.size(); ++k)
+    if (any.count[k] > 0.0 && shown[k] == 0.0) squares += (any.truth[k] - mean) * (any.truth[k] - mean);
+  return std::sqrt(squares / cells);
+}
+
 void write_pgm(const std::string& path, const std::vector<std::vector<float>>& pictures) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return;
@@ -218,9 +231,10 @@ int run_seals(int argc, char** argv) {
               any.count[at] += 1.0;
               any.truth[at] += place->height_mm;
               measured += 1.0;
-              if (place->shown && !std::isnan(map.at(x, y)))
+              if (place->shown && !std::isnan(map.at(x, y))) {
                 any.shown[at] += 1.0;
-              else
+                any.shown_by[s][at] += 1.0;
+              } else
                 lost += 1.0;
             }
       fmt::print(
@@ -263,16 +277,20 @@ int run_seals(int argc, char** argv) {
       shown += (any.shown[c] > 0.0 ? 1.0 : 0.0) / static_cast<double>(any.truth.size());
     }
     const double times = best / all.rms;
+    double possible = 1e9;
+    for (const auto& shown_by : any.shown_by) possible = std::min(possible, least_error(any, shown_by));
+    possible /= least_error(any, any.shown);
     least = std::min(least, times);
     sum += times;
     fmt::print(
         "seed {}: relief {:.3f} mm RMS; error of the best single one {:.4f} (not folded {:.4f}), of the average {:.4f} "
         "({:.4f} where "
-        "shown): {:.2f} times as good; any shows {:.3f} of the seal, drawn of that {:.4f} (best single {:.3f}); turn "
+        "shown): {:.2f} times as good, {:.2f} if all that is shown were known exactly; any shows {:.3f} of the seal, "
+        "drawn of that {:.4f} (best single {:.3f}); turn "
         "{:.2f} mm "
         "({:.1f} deviations), likeness",
-        options.seed, std::sqrt(deviation), best, best_alone, all.rms, all.rms_shown, times, shown, all.covered,
-        covered, average.placing.turn_mm, average.placing.turn_sure);
+        options.seed, std::sqrt(deviation), best, best_alone, all.rms, all.rms_shown, times, possible, shown,
+        all.covered, covered, average.placing.turn_mm, average.placing.turn_sure);
     for (const double like : average.placing.likeness) fmt::print(" {:.1f}", like);
     fmt::print("; drawn {:.3f} with {:.4f}, gain {:.2f}\n", all.seen, all.rms_seen, all.best_gain);
     std::fflush(stdout);
