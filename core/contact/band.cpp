@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <unordered_map>
 #include <utility>
 
 #include "core/base/system/parallel.h"
@@ -68,15 +69,18 @@ std::vector<PatchPoint> thinned(const std::vector<PatchPoint>& samples, float si
   glm::vec3 half(0.0f);
   for (const PatchPoint& sample : samples) half = glm::max(half, glm::abs(sample.position - middle));
   const glm::ivec3 first(glm::ceil(half / side));
-  const glm::ivec3 cubes = 2 * first + 1;
-  BrickMap<std::uint8_t> taken({cubes.x, cubes.y, cubes.z}, 0);
+  std::unordered_map<std::uint64_t, std::array<std::uint64_t, 8>> taken;  // bits of 8x8x8 cubes, by which they are
+  std::array<std::uint64_t, 8>* bits = nullptr;
+  std::uint64_t last = 0;
   std::vector<PatchPoint> few;
   for (const PatchPoint& sample : samples) {
-    const glm::ivec3 at = first + glm::ivec3(glm::round((sample.position - middle) / side));
-    if (std::uint8_t& cube = taken.at(at.x, at.y, at.z); cube == 0) {
-      cube = 1;
-      few.push_back(sample);
-    }
+    const glm::uvec3 at(first + glm::ivec3(glm::round((sample.position - middle) / side)));
+    const std::uint64_t key = std::uint64_t{at.z / 8} << 42 | std::uint64_t{at.y / 8} << 21 | at.x / 8;
+    if (bits == nullptr || key != last) bits = &taken[last = key];  // most lie beside the one before
+    std::uint64_t& word = (*bits)[at.z % 8];
+    const std::uint64_t bit = std::uint64_t{1} << (at.y % 8 * 8 + at.x % 8);
+    if ((word & bit) == 0) few.push_back(sample);
+    word |= bit;
   }
   return few;
 }

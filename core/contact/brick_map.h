@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/volume/volume.h"
@@ -37,6 +38,18 @@ class BrickMap {
       values_.resize(values_.size() + kEdge * kEdge * kEdge, none_);
     }
     return values_[place + inside(x, y, z)];
+  }
+  /// Room for so many bricks: none of those that are made then moves another.
+  void reserve(std::size_t bricks) { values_.reserve(bricks * kEdge * kEdge * kEdge); }
+  /// The values of a brick, along x, then y, then z, `none` at points beyond the grid; null where there is none.
+  /// Coordinates as in has_brick(), or beyond the grid.
+  const T* brick(std::int64_t bx, std::int64_t by, std::int64_t bz) const noexcept {
+    if (beyond(bx, bricks_.x) || beyond(by, bricks_.y) || beyond(bz, bricks_.z)) return nullptr;
+    const std::uint32_t place = place_[static_cast<std::size_t>((bz * bricks_.y + by) * bricks_.x + bx)];
+    return place == kNoBrick ? nullptr : values_.data() + place;
+  }
+  T* brick(std::int64_t bx, std::int64_t by, std::int64_t bz) noexcept {
+    return const_cast<T*>(std::as_const(*this).brick(bx, by, bz));
   }
   /// Makes a brick, so that several threads may write in it. Coordinates as in has_brick().
   void add_brick(std::int64_t bx, std::int64_t by, std::int64_t bz) { at(kEdge * bx, kEdge * by, kEdge * bz) = none_; }

@@ -25,6 +25,9 @@ constexpr std::int64_t kNodeGrain = 1 << 14;
 
 constexpr std::array<glm::ivec3, 3> kAxes{glm::ivec3(1, 0, 0), glm::ivec3(0, 1, 0), glm::ivec3(0, 0, 1)};
 
+std::int32_t capacity(float faces) {
+  return static_cast<std::int32_t>(std::clamp(std::lround(kUnit * faces), std::int64_t{-kHard}, std::int64_t{kHard}));
+}
 float cost_of(float strength) { return std::clamp(1.0f - strength / kClearDip, kLeastCost, kMostCost); }
 
 /// Does the height of a node over the patch tell its side? Not beyond the rim: where a gap ends in an upright wall, the
@@ -123,9 +126,10 @@ bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
   return !pinched.empty();
 }
 
-/// Nodes over the same piece of the patches: flow runs across the band, and most of it stays in one block.
+/// Nodes over the same piece of the patches: flow runs across the band, and most of it stays in one block. With blocks
+/// twice as wide threads wait for each other: a quarter more by the clock on two cores.
 LatticeCut cut_in_blocks(const ContactBand& band) {
-  constexpr float kBlockSide = 64.0f;
+  constexpr float kBlockSide = 32.0f;
   const Dims d = band.node_at.dims();
   const auto along = [](std::int64_t n) { return static_cast<std::uint32_t>(static_cast<float>(n) / kBlockSide) + 1; };
   const std::uint32_t x = along(d.x), y = along(d.y), z = along(d.z);
@@ -137,7 +141,7 @@ LatticeCut cut_in_blocks(const ContactBand& band) {
     block[n] = (std::min(cube.z, z - 1) * y + std::min(cube.y, y - 1)) * x + std::min(cube.x, x - 1);
     height[n] = band.nodes[n].height;
   });
-  return {block, x * y * z, height};
+  return {std::move(block), x * y * z, height};
 }
 
 /// Of the face between two nodes that are neighbours along an axis.
@@ -164,7 +168,7 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
       certain_(evidence.band.nodes.size(), false) {
   const Dips& dips = evidence.dips;
   const auto count = static_cast<std::uint32_t>(band_.nodes.size());
-  std::vector<std::int64_t> wish(count);  // > 0: tablet
+  std::vector<std::int32_t> wish(count);  // > 0: tablet
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const ContactBand::Node& node = band_.nodes[n];
@@ -172,22 +176,21 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
     if (known && at_border(band_, node))
       wish[n] = node.height < 0.0f ? kHard : -kHard;
     else
-      wish[n] = std::lround(
-          kUnit * ((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - (known ? kPull * node.height : 0.0f)));
+      wish[n] = capacity((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - (known ? kPull * node.height : 0.0f));
   });
   for (std::uint32_t n = 0; n < count; ++n) certain_[n] = std::abs(wish[n]) == kHard;
   for (const SurfaceHint& hint : evidence.hints) {
-    const std::int64_t sense = hint.side == ClaySide::kTablet ? 1 : -1;
+    const std::int32_t sense = hint.side == ClaySide::kTablet ? 1 : -1;
     if (hint.weight >= kCertain) {
       if (!certain_[hint.node]) wish[hint.node] = sense * kHard;
       certain_[hint.node] = true;
     } else if (!certain_[hint.node]) {
-      wish[hint.node] += sense * std::lround(kUnit * hint.weight);
+      wish[hint.node] += sense * capacity(hint.weight);
     }
   }
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {
     const auto n = static_cast<std::uint32_t>(i);
-    const auto cost = static_cast<std::int32_t>(std::clamp<std::int64_t>(wish[n], -kHard, kHard));
+    const std::int32_t cost = std::clamp(wish[n], -kHard, kHard);
     cut_.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
   });
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <memory>
 
@@ -34,12 +36,28 @@ struct Block {
     return (static_cast<std::ptrdiff_t>(step.z) * kSide + step.y) * kSide + step.x;
   }
   static constexpr std::size_t place(int x, int y, int z) { return static_cast<std::size_t>(away({x, y, z})); }
-  template <class Get>
-  void fill(const glm::ivec3& corner, const Get& get) {
-    for (int z = 0; z < kSide; ++z)
-      for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x)
-          value[place(x, y, z)] = get(corner.x + x - kHalo, corner.y + y - kHalo, corner.z + z - kHalo);
+  /// Values of a map around the brick whose first point `corner` is.
+  void fill(const glm::ivec3& corner, const BrickMap<T>& map) {
+    constexpr int kBrick = static_cast<int>(kEdge);
+    constexpr int kFirst = -((kHalo + kBrick - 1) / kBrick), kLast = kSide - kHalo;
+    value.fill(T{});
+    for (int z = kFirst * kBrick; z < kLast; z += kBrick)
+      for (int y = kFirst * kBrick; y < kLast; y += kBrick)
+        for (int x = kFirst * kBrick; x < kLast; x += kBrick) {
+          const glm::ivec3 at = (corner + glm::ivec3(x, y, z)) / kBrick;
+          if (corner.x + x < 0 || corner.y + y < 0 || corner.z + z < 0) continue;
+          if (const T* const brick = map.brick(at.x, at.y, at.z)) put_brick({x, y, z}, brick);
+        }
+  }
+
+ private:
+  void put_brick(const glm::ivec3& first, const T* brick) {
+    constexpr int kBrick = static_cast<int>(kEdge);
+    const glm::ivec3 low = glm::max(first, -kHalo), high = glm::min(first + kBrick, kSide - kHalo);
+    for (int z = low.z; z < high.z; ++z)
+      for (int y = low.y; y < high.y; ++y)
+        std::copy_n(brick + ((z - first.z) * kBrick + y - first.y) * kBrick + low.x - first.x, high.x - low.x,
+                    value.begin() + place(low.x + kHalo, y + kHalo, z + kHalo));
   }
 };
 
@@ -51,6 +69,7 @@ using Clay = Block<std::int32_t, kArmHalo>;  // 1: clay, 0: air
 struct Direction {
   DipDirection dip;
   std::vector<RowTap> disk;
+  std::vector<glm::ivec3> ends;  ///< of the arms on both sides, and the middle
 };
 
 /// Half of the ways to points up to two steps away along each axis: some 25 degrees from one to the next, so that a
@@ -64,8 +83,13 @@ std::vector<Direction> directions() {
     Direction d;
     const glm::vec3 unit = glm::normalize(glm::vec3(step));
     d.dip = {{unit.x, unit.y, unit.z}, kLeastDipCosine, {}};
-    for (std::size_t i = 0; i < kArms.size(); ++i)
-      d.dip.arms[i] = static_cast<std::int32_t>(Means::away(glm::ivec3(glm::round(kArms[i] * unit))));
+    d.ends.emplace_back(0);
+    for (std::size_t i = 0; i < kArms.size(); ++i) {
+      const glm::ivec3 end(glm::round(kArms[i] * unit));
+      d.dip.arms[i] = static_cast<std::int32_t>(Means::away(end));
+      d.ends.push_back(end);
+      d.ends.push_back(-end);
+    }
     float sum = 0.0f;
     for (int z = -3; z <= 3; ++z)
       for (int y = -3; y <= 3; ++y)
@@ -82,9 +106,18 @@ std::vector<Direction> directions() {
   return all;
 }
 
-bool in_clay(const BitVolume& inside, const glm::ivec3& p) {
+/// 1 where the points around a brick are clay, 0 where they are air or beyond the grid.
+void fill_clay(const BitVolume& inside, const glm::ivec3& corner, Clay& clay) {
   const Dims d = inside.dims();
-  return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < d.x && p.y < d.y && p.z < d.z && inside.get(p.x, p.y, p.z);
+  clay.value.fill(0);
+  const glm::ivec3 first = corner - kArmHalo, low = glm::max(first, 0),
+                   high = glm::min(first + Clay::kSide, glm::ivec3(d.x, d.y, d.z));
+  for (int z = low.z; z < high.z; ++z)
+    for (int y = low.y; y < high.y; ++y) {
+      const std::uint64_t* const words = inside.row(y, z);
+      std::int32_t* const row = clay.value.data() + Clay::place(0, y - first.y, z - first.z);
+      for (int x = low.x; x < high.x; ++x) row[x - first.x] = static_cast<std::int32_t>(words[x >> 6] >> (x & 63) & 1u);
+    }
 }
 
 static_assert(Means::kSide == kRowLength && kEdge == kDipRow);
@@ -98,8 +131,8 @@ class BrickDips {
 
   void find(std::uint32_t first, std::uint32_t last, Dips& dips) {
     const glm::ivec3 corner = band_.point(first) / static_cast<int>(kEdge) * static_cast<int>(kEdge);
-    around_.fill(corner, [&](int x, int y, int z) { return density_.raw(x, y, z); });
-    clay_.fill(corner, [&](int x, int y, int z) { return in_clay(inside_, {x, y, z}) ? 1 : 0; });
+    around_.fill(corner, density_.raw());
+    fill_clay(inside_, corner, clay_);
     rows_.clear();
     std::int32_t last_row = -1;
     for (std::uint32_t node = first; node < last; ++node) {
@@ -131,26 +164,24 @@ class BrickDips {
     across_.resize(rows_.size());
     const std::size_t count = rows_across(rows_, d.dip, clay_.value.data(), across_.data());
     if (count == 0) return;
-    asked_.fill(false);
+    // An arm of a row ends in one row: no arm is longer than the halo.
+    std::array<std::uint32_t, Means::kSide> along{}, asked{};  // bit y of z: rows
     for (std::size_t i = 0; i < count; ++i) {
-      const std::int32_t place = rows_[across_[i]].place - kArmHalo;
-      const auto ask_for = [&](std::int32_t away) {  // an arm ends in one row, or runs on into the next
-        const std::int32_t from = place + kArmHalo + away;
-        asked_[static_cast<std::size_t>(from / Means::kSide)] = true;
-        asked_[static_cast<std::size_t>((from + static_cast<int>(kEdge) - 1) / Means::kSide)] = true;
-      };
-      ask_for(0);
-      for (const std::int32_t arm : d.dip.arms) {
-        ask_for(arm);
-        ask_for(-arm);
-      }
+      const std::int32_t row = rows_[across_[i]].place / Means::kSide;
+      along[static_cast<std::size_t>(row / Means::kSide)] |= 1u << row % Means::kSide;
     }
+    for (const glm::ivec3& end : d.ends)
+      for (int z = kArmHalo; z < kArmHalo + static_cast<int>(kEdge); ++z) {
+        const std::uint32_t rows = along[static_cast<std::size_t>(z)];
+        asked[static_cast<std::size_t>(z + end.z)] |= end.y < 0 ? rows >> -end.y : rows << end.y;
+      }
     summed_.clear();
     for (int z = 0; z < Means::kSide; ++z)
-      for (int y = 0; y < Means::kSide; ++y)
-        if (const std::size_t row = Means::place(0, y, z); asked_[row / Means::kSide])
-          summed_.push_back({static_cast<std::int32_t>(Around::place(kDiskHalo, y + kDiskHalo, z + kDiskHalo)),
-                             static_cast<std::int32_t>(row)});
+      for (std::uint32_t rows = asked[static_cast<std::size_t>(z)]; rows != 0; rows &= rows - 1) {
+        const int y = std::countr_zero(rows);
+        summed_.push_back({static_cast<std::int32_t>(Around::place(kDiskHalo, y + kDiskHalo, z + kDiskHalo)),
+                           static_cast<std::int32_t>(Means::place(0, y, z))});
+      }
     sum_rows(around_.value.data(), d.disk, summed_, means_.value.data());
     raise_dips(rows_, std::span(across_).first(count), d.dip, clay_.value.data(), means_.value.data());
   }
@@ -161,7 +192,6 @@ class BrickDips {
   const std::vector<Direction>& directions_;
   std::vector<DipRow> rows_;           ///< that have nodes
   std::vector<std::uint32_t> across_;  ///< those of them for some of whose nodes a direction is one across
-  std::array<bool, static_cast<std::size_t>(Means::kSide) * Means::kSide> asked_{};
   std::vector<SummedRow> summed_;
   Around around_;
   Clay clay_;
@@ -223,9 +253,9 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
   DUBSAR_CHECK(d == band.node_at.dims());
   const std::vector<BrickPlace> places = bricks_around(band, around);
   BrickMap<float> raw(d, 0.0f), smooth(d, 0.0f);
-  for (const auto& [bx, by, bz] : places) {  // all are there before threads write
-    raw.add_brick(bx, by, bz);
-    smooth.add_brick(bx, by, bz);
+  for (BrickMap<float>* const map : {&raw, &smooth}) {  // all are there before threads write
+    map->reserve(places.size());
+    for (const auto& [bx, by, bz] : places) map->add_brick(bx, by, bz);
   }
   std::vector<float> slab;
   progress.begin("contact density", static_cast<std::int64_t>(places.size()), "brick");
@@ -237,10 +267,13 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
     DUBSAR_TRY(source.read(z0, z1, slab));
     parallel_for(static_cast<std::int64_t>(end - first), 16, [&](std::int64_t i) {
       const auto [bx, by, bz] = places[first + static_cast<std::size_t>(i)];
+      float* const brick = raw.brick(bx, by, bz);
+      const std::int64_t x = bx * kEdge, y = by * kEdge, rows = std::min(kEdge, d.y - y),
+                         length = std::min(kEdge, d.x - x);
       for (std::int64_t z = z0; z < z1; ++z)
-        for (std::int64_t y = by * kEdge; y < std::min((by + 1) * kEdge, d.y); ++y)
-          for (std::int64_t x = bx * kEdge; x < std::min((bx + 1) * kEdge, d.x); ++x)
-            raw.at(x, y, z) = slab[static_cast<std::size_t>((z - z0) * d.slice() + y * d.x + x)];
+        for (std::int64_t row = 0; row < rows; ++row)
+          std::copy_n(slab.data() + (z - z0) * d.slice() + (y + row) * d.x + x, length,
+                      brick + ((z - z0) * kEdge + row) * kEdge);
     });
     progress.advance(static_cast<std::int64_t>(end - first));
   }
@@ -248,16 +281,18 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
     const auto [bx, by, bz] = places[static_cast<std::size_t>(i)];
     using Raw = Block<float, 1>;
     Raw block;
-    block.fill({bx * kEdge, by * kEdge, bz * kEdge}, [&](int x, int y, int z) { return raw.get(x, y, z); });
+    block.fill({bx * kEdge, by * kEdge, bz * kEdge}, raw);
     // In place: what stands before a value was filtered already, and is not needed any more.
     for (const std::size_t step : {Raw::place(1, 0, 0), Raw::place(0, 1, 0), Raw::place(0, 0, 1)})
       for (std::size_t k = 0; k + 2 * step < block.value.size(); ++k)
         block.value[k] = 0.25f * (block.value[k] + block.value[k + 2 * step]) + 0.5f * block.value[k + step];
-    for (std::int64_t z = bz * kEdge; z < std::min((bz + 1) * kEdge, d.z); ++z)
-      for (std::int64_t y = by * kEdge; y < std::min((by + 1) * kEdge, d.y); ++y)
-        for (std::int64_t x = bx * kEdge; x < std::min((bx + 1) * kEdge, d.x); ++x)
-          smooth.at(x, y, z) = block.value[Raw::place(
-              static_cast<int>(x - bx * kEdge), static_cast<int>(y - by * kEdge), static_cast<int>(z - bz * kEdge))];
+    float* const brick = smooth.brick(bx, by, bz);
+    const auto points = [](std::int64_t b, std::int64_t end) {
+      return static_cast<int>(std::min(kEdge, end - b * kEdge));
+    };
+    for (int z = 0; z < points(bz, d.z); ++z)
+      for (int y = 0; y < points(by, d.y); ++y)
+        std::copy_n(block.value.begin() + Raw::place(0, y, z), points(bx, d.x), brick + (z * kEdge + y) * kEdge);
   });
   progress.end();
   return BandDensity(std::move(raw), std::move(smooth));

@@ -22,8 +22,14 @@ class BandDensity {
   bool covers(const ContactBand& band) const;
   /// Low-passed by [1 2 1]/4 per axis.
   float get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return smooth_.get(x, y, z); }
-  /// As the source has it.
-  float raw(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return raw_.get(x, y, z); }
+  /// The values of a brick as get() has them (BrickMap::brick()).
+  const float* brick(std::int64_t bx, std::int64_t by, std::int64_t bz) const noexcept {
+    return smooth_.brick(bx, by, bz);
+  }
+  /// As the source has it, until it is dropped.
+  const BrickMap<float>& raw() const noexcept { return raw_; }
+  /// Half of the memory: nobody needs it behind find_dips().
+  void drop_raw() { raw_ = BrickMap<float>({}, 0.0f); }
 
  private:
   BandDensity(BrickMap<float> raw, BrickMap<float> smooth) : raw_(std::move(raw)), smooth_(std::move(smooth)) {}

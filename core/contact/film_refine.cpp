@@ -35,15 +35,25 @@ constexpr float kQuiet = 6.0f;  ///< steps from the contact to the sheets in cla
 using Profile = std::array<float, 2 * kReach + 1>;
 
 float trilinear(const BandDensity& density, const glm::vec3& p) {
+  constexpr std::int64_t kEdge = BrickMap<float>::kEdge;
   const glm::vec3 f = glm::floor(p), t = p - f;
-  float sum = 0.0f;
-  for (int k = 0; k < 8; ++k) {
-    const int dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
-    const float w = (dx ? t.x : 1.0f - t.x) * (dy ? t.y : 1.0f - t.y) * (dz ? t.z : 1.0f - t.z);
-    sum += w * density.get(static_cast<std::int64_t>(f.x) + dx, static_cast<std::int64_t>(f.y) + dy,
-                           static_cast<std::int64_t>(f.z) + dz);
-  }
-  return sum;
+  const auto x = static_cast<std::int64_t>(f.x), y = static_cast<std::int64_t>(f.y), z = static_cast<std::int64_t>(f.z);
+  const auto sum = [&](const auto& value) {
+    float values = 0.0f;
+    for (int k = 0; k < 8; ++k) {
+      const int dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
+      const float w = (dx ? t.x : 1.0f - t.x) * (dy ? t.y : 1.0f - t.y) * (dz ? t.z : 1.0f - t.z);
+      values += w * value(dx, dy, dz);
+    }
+    return values;
+  };
+  const auto in_one_brick = [](std::int64_t at) { return at >= 0 && at % kEdge != kEdge - 1; };
+  if (in_one_brick(x) && in_one_brick(y) && in_one_brick(z))
+    if (const float* const brick = density.brick(x / kEdge, y / kEdge, z / kEdge)) {
+      const float* const first = brick + (z % kEdge * kEdge + y % kEdge) * kEdge + x % kEdge;
+      return sum([&](int dx, int dy, int dz) { return first[(dz * kEdge + dy) * kEdge + dx]; });
+    }
+  return sum([&](int dx, int dy, int dz) { return density.get(x + dx, y + dy, z + dz); });
 }
 
 struct Dip {

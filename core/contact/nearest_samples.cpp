@@ -162,18 +162,27 @@ std::uint32_t NearestSamples::nearest_of(const glm::ivec3& p, std::uint32_t gues
 /// Goes on to the nearest of the samples around `nearest`, at the square of a distance `least`. One beyond the grid has
 /// none around it.
 void NearestSamples::look_around(const glm::ivec3& p, std::uint32_t& nearest, float& least) const {
+  glm::ivec3 middle(-kMostLooks);  // of the look before
+  std::uint32_t seen = 0;          // bits of cells around it whose samples were looked at
   for (int look = 0; look < kMostLooks; ++look) {
     const std::uint32_t before = nearest, own = cell_of_[before];
     if (own == kNone) return;
     // Beside the foot of the point on the patch, by no more than what is known lies, and half a diagonal of a cell.
     const glm::vec3 normal = samples_[before].normal, off = glm::vec3(p) - samples_[before].position;
     const float height = glm::dot(off, normal), aside = std::sqrt(std::max(least - height * height, 0.0f)) + 0.87f;
+    const glm::ivec3 from = cells_[own].point - 1 - middle;
+    std::uint32_t now = 0;
     const std::uint32_t* const first = beside_.data() + cells_[own].first_beside;
     for (const std::uint32_t* beside = first; beside != first + cells_[own].beside; ++beside) {
       const Cell& cell = cells_[*beside];
       const glm::vec3 way(cell.point - p);
       const float up = glm::dot(way, normal);
       if (glm::dot(way, way) - up * up > aside * aside) continue;
+      const glm::ivec3 at = cell.point - cells_[own].point + 1, then = from + at + 1;
+      now |= 1u << ((at.z * 3 + at.y) * 3 + at.x);
+      const auto around = [](int along) { return static_cast<unsigned>(along) < 3; };
+      if (around(then.x) && around(then.y) && around(then.z) && seen >> ((then.z * 3 + then.y) * 3 + then.x) & 1u)
+        continue;
       const Place* const places = places_.data() + cell.first_place;
       for (const Place* place = places; place != places + cell.places; ++place) {
         const glm::vec3 to = glm::vec3(p) - place->position;
@@ -184,6 +193,8 @@ void NearestSamples::look_around(const glm::ivec3& p, std::uint32_t& nearest, fl
       }
     }
     if (nearest == before || cell_of_[nearest] == own) break;
+    middle = cells_[own].point;
+    seen = now;
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <unordered_map>
 
 #include "core/base/system/parallel_gather.h"
 #include "core/mesh/evidence.h"
@@ -24,38 +23,6 @@ glm::vec3 area_vector(const QuadMesh& mesh, std::uint32_t quad) {
 /// What is neither tablet nor envelope: cavities in the clay and crumbs of it.
 bool is_rest(const SurfaceModel& model, std::uint32_t quad) {
   return model.partitions[model.quad_partition[quad]].kind == PartitionKind::kPores;
-}
-
-struct RestPiece {
-  std::vector<std::uint32_t> quads;
-  double volume = 0.0;  ///< below 0: of air
-};
-struct RestPieces {
-  std::unordered_map<std::uint32_t, std::uint32_t> piece_of;  ///< by quad
-  std::vector<RestPiece> all;
-};
-
-/// The closed pieces that have faces in the band.
-RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces) {
-  RestPieces pieces;
-  for (const BandFace& face : faces) {
-    if (!is_rest(model, face.quad) || pieces.piece_of.count(face.quad) != 0) continue;
-    const auto piece = static_cast<std::uint32_t>(pieces.all.size());
-    std::vector<std::uint32_t> queue{face.quad};
-    pieces.piece_of.emplace(face.quad, piece);
-    double volume = 0.0;
-    const glm::vec3 origin = graph.centre[face.quad];
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      const std::uint32_t f = queue[i];
-      volume += static_cast<double>(glm::dot(graph.centre[f] - origin, graph.normal[f]) * graph.area[f]) / 3.0;
-      for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
-        const std::uint32_t g = graph.neighbour[s];
-        if (g != FaceGraph::kNone && pieces.piece_of.emplace(g, piece).second) queue.push_back(g);
-      }
-    }
-    pieces.all.push_back({std::move(queue), volume});
-  }
-  return pieces;
 }
 
 /// Where the clay around a piece lies.
@@ -87,16 +54,42 @@ std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& 
       });
 }
 
-std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const FaceGraph& graph, const ContactBand& band,
+RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces) {
+  RestPieces pieces;
+  for (const BandFace& face : faces) {
+    if (!is_rest(model, face.quad) || pieces.face_of.count(face.quad) != 0) continue;
+    const auto number = static_cast<std::uint32_t>(pieces.all.size());
+    RestPiece piece;
+    const auto add = [&](std::uint32_t quad) {
+      const auto place = static_cast<std::uint32_t>(piece.quads.size());
+      if (pieces.face_of.emplace(quad, RestPieces::Face{number, place}).second) piece.quads.push_back(quad);
+    };
+    add(face.quad);
+    const glm::vec3 origin = graph.centre[face.quad];
+    for (std::size_t i = 0; i < piece.quads.size(); ++i) {
+      const std::uint32_t f = piece.quads[i];
+      piece.volume += static_cast<double>(glm::dot(graph.centre[f] - origin, graph.normal[f]) * graph.area[f]) / 3.0;
+      for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+        if (graph.neighbour[s] == FaceGraph::kNone) continue;
+        piece.beside.push_back(graph.neighbour[s]);
+        add(graph.neighbour[s]);
+      }
+      piece.first_side.push_back(static_cast<std::uint32_t>(piece.beside.size()));
+    }
+    pieces.all.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+std::vector<ClayCavity> cavities_off_contact(const RestPieces& pieces, const ContactBand& band,
                                              const std::vector<BandFace>& faces) {
-  const RestPieces pieces = rest_pieces(model, graph, faces);
   std::vector<Extent> extents(pieces.all.size());
   std::vector<ClayCavity> around(pieces.all.size());
   for (const BandFace& face : faces) {
-    const auto piece = pieces.piece_of.find(face.quad);
-    if (piece == pieces.piece_of.end()) continue;
-    extents[piece->second].add(band.nodes[face.node]);
-    around[piece->second].push_back(face.node);
+    const auto rest = pieces.face_of.find(face.quad);
+    if (rest == pieces.face_of.end()) continue;
+    extents[rest->second.piece].add(band.nodes[face.node]);
+    around[rest->second.piece].push_back(face.node);
   }
   std::vector<ClayCavity> off;
   for (std::size_t i = 0; i < around.size(); ++i) {
@@ -138,15 +131,14 @@ std::vector<SurfaceHint> hints_of_faces(const SurfaceModel& model, const Contact
   return hints;
 }
 
-std::int64_t relabel_faces(SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces,
+std::int64_t relabel_faces(SurfaceModel& model, const RestPieces& pieces, const std::vector<BandFace>& faces,
                            const std::vector<ClaySide>& side) {
   const PartitionId tablet = model.partitions.find(PartitionKind::kTablet)->id,
                     inside = model.partitions.find(PartitionKind::kEnvelopeInside)->id;
-  const RestPieces pieces = rest_pieces(model, graph, faces);
   std::vector<std::array<std::int64_t, 2>> votes(pieces.all.size(), {0, 0});
   for (const BandFace& face : faces)
-    if (const auto piece = pieces.piece_of.find(face.quad); piece != pieces.piece_of.end())
-      ++votes[piece->second][static_cast<std::size_t>(side[face.node])];
+    if (const auto rest = pieces.face_of.find(face.quad); rest != pieces.face_of.end())
+      ++votes[rest->second.piece][static_cast<std::size_t>(side[face.node])];
   const auto joins = [&](std::uint32_t piece) {
     return pieces.all[piece].volume < 0.0 && votes[piece][0] > 0 && votes[piece][1] > 0;
   };
@@ -165,9 +157,9 @@ std::int64_t relabel_faces(SurfaceModel& model, const FaceGraph& graph, const st
   for (const BandFace& face : faces) {
     PartitionId& label = model.quad_partition[face.quad];
     const PartitionKind kind = model.partitions[label].kind;
-    const auto piece = pieces.piece_of.find(face.quad);
-    const bool pocket = piece != pieces.piece_of.end();
-    if (pocket ? !joins(piece->second)
+    const auto rest = pieces.face_of.find(face.quad);
+    const bool pocket = rest != pieces.face_of.end();
+    if (pocket ? !joins(rest->second.piece)
                : kind != PartitionKind::kTablet && kind != PartitionKind::kEnvelopeInside &&
                      kind != PartitionKind::kEnvelopeOutside)
       continue;
@@ -175,17 +167,20 @@ std::int64_t relabel_faces(SurfaceModel& model, const FaceGraph& graph, const st
       label = tablet;
     else if (kind != PartitionKind::kEnvelopeInside && kind != PartitionKind::kEnvelopeOutside)
       label = inside;
-    if (pocket) queue[piece->second].push_back(face.quad);
+    if (pocket) queue[rest->second.piece].push_back(face.quad);
   }
   // Faces of a pocket beyond the band follow their neighbours.
   for (std::vector<std::uint32_t>& front : queue)
-    for (std::size_t i = 0; i < front.size(); ++i)
-      for (std::uint32_t s = graph.first_side[front[i]]; s < graph.first_side[front[i] + 1]; ++s) {
-        const std::uint32_t g = graph.neighbour[s];
-        if (g == FaceGraph::kNone || !is_rest(model, g)) continue;
+    for (std::size_t i = 0; i < front.size(); ++i) {
+      const auto [number, place] = pieces.face_of.at(front[i]);
+      const RestPiece& piece = pieces.all[number];
+      for (std::uint32_t s = piece.first_side[place]; s < piece.first_side[place + 1]; ++s) {
+        const std::uint32_t g = piece.beside[s];
+        if (!is_rest(model, g)) continue;
         model.quad_partition[g] = model.quad_partition[front[i]];
         front.push_back(g);
       }
+    }
   return pockets;
 }
 

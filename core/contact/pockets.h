@@ -3,6 +3,7 @@
 // is divided. Closed pockets of air that lie on the contact become relief of tablet and envelope.
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -23,10 +24,27 @@ struct BandFace {
 /// All x-quads whose point of clay is in the band, by node.
 std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& index, const ContactBand& band);
 
+/// A closed piece of the surface that is neither tablet nor envelope: around a cavity in the clay, or a crumb of it.
+struct RestPiece {
+  std::vector<std::uint32_t> quads;
+  std::vector<std::uint32_t> first_side{0}, beside;  ///< of each of them, the x-quads beside it
+  double volume = 0.0;                               ///< below 0: of air
+};
+struct RestPieces {
+  struct Face {
+    std::uint32_t piece, place;  ///< in its quads
+  };
+  std::unordered_map<std::uint32_t, Face> face_of;  ///< by quad
+  std::vector<RestPiece> all;
+};
+
+/// Those that have faces in the band.
+RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces);
+
 /// Closed cavities that do not open to the contact: pores of the clay. The mouth of a pocket lies where the clays meet,
 /// and the patches miss that by less than the pocket is deep; a cavity that is farther from every patch than it
 /// reaches across the contact is none. By their first nodes; the same for any number of threads.
-std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const FaceGraph& graph, const ContactBand& band,
+std::vector<ClayCavity> cavities_off_contact(const RestPieces& pieces, const ContactBand& band,
                                              const std::vector<BandFace>& faces);
 
 /// Faces of tablet and envelope away from the rim of the patches are certain; those at the rim and those of closed
@@ -36,7 +54,7 @@ std::vector<SurfaceHint> hints_of_faces(const SurfaceModel& model, const Contact
 
 /// Gives the faces the sides of their clay, and pockets with faces of both sides to tablet and envelope. Returns the
 /// number of such pockets.
-std::int64_t relabel_faces(SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces,
+std::int64_t relabel_faces(SurfaceModel& model, const RestPieces& pieces, const std::vector<BandFace>& faces,
                            const std::vector<ClaySide>& side);
 
 }  // namespace dubsar

@@ -34,17 +34,21 @@ bool is_tablet_in_envelope(const SurfaceModel& model) {
 /// The surface beside a band.
 struct SurfaceBeside {
   EdgeIndex index;
-  FaceGraph graph;
   std::vector<BandFace> faces;
+  RestPieces rest;
   std::vector<ClayCavity> pores;
   ClayBeyond beyond;
 
   static Result<SurfaceBeside> find(const SurfaceModel& model, const ContactBand& band, Progress& progress) {
     DUBSAR_ASSIGN(EdgeIndex index, EdgeIndex::create(model.samples));
-    DUBSAR_ASSIGN(FaceGraph graph, FaceGraph::build(model.mesh, progress));
     std::vector<BandFace> faces = faces_of_band(model, index, band);
-    std::vector<ClayCavity> pores = cavities_off_contact(model, graph, band, faces);
-    return SurfaceBeside{std::move(index), std::move(graph), std::move(faces), std::move(pores),
+    RestPieces rest;
+    {
+      DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
+      rest = rest_pieces(model, graph, faces);
+    }
+    std::vector<ClayCavity> pores = cavities_off_contact(rest, band, faces);
+    return SurfaceBeside{std::move(index), std::move(faces), std::move(rest), std::move(pores),
                          ClayBeyond(model.samples.signs, band)};
   }
 };
@@ -63,8 +67,8 @@ DividedClay divided(const ContactBand& band, const Dips& dips, const SurfaceBesi
           .beyond = beside.beyond,
           .dips = dips,
           .index = beside.index,
-          .graph = beside.graph,
           .faces = beside.faces,
+          .rest = beside.rest,
           .pores = beside.pores,
           .side = side};
 }
@@ -106,13 +110,14 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(Recentred recentred, recentre(samples, model.samples.signs, density, progress, options.rules));
   log_debug("contact: looked for up to {:.1f} steps from the smooth patch", recentred.longest);
   DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
-  DUBSAR_ASSIGN(const BandDensity values, density_of(band, std::move(recentred.density), density, progress));
+  DUBSAR_ASSIGN(BandDensity values, density_of(band, std::move(recentred.density), density, progress));
   std::optional<ClayContrast> clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
   if (clays && std::abs(clays->step()) < options.least_clay_step) clays.reset();
   if (!clays) band.trim_envelope(options.out_reach);
   report.points = static_cast<std::int64_t>(band.nodes.size());
-  DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress));
   DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band, progress));
+  DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress));
+  values.drop_raw();
   report.clays_differ = clays.has_value();
   std::vector<float> votes;
   if (clays) {

@@ -26,6 +26,22 @@ std::size_t vertices_at_air(const LabelledMesh& labelled) {
   return labelled.first_mixed + static_cast<std::size_t>(std::ranges::count(labelled.at_air, std::uint8_t{1}));
 }
 
+/// What lies at the air, without incidences: vertices below `dual`, by their numbers.
+QuadMesh mesh_with_numbers(const LabelledMesh& labelled, const std::vector<std::uint32_t>& number, std::size_t dual) {
+  QuadMesh mesh;
+  mesh.embedded = labelled.mesh.embedded;
+  mesh.positions.resize(dual);
+  for (std::size_t v = 0; v < number.size(); ++v)
+    if (number[v] < dual) mesh.positions[number[v]] = labelled.mesh.positions[v];
+  mesh.quads.assign(labelled.mesh.quads.begin(), labelled.mesh.quads.begin() + labelled.first_contact);
+  parallel_for(mesh.quad_count(), 1 << 14, [&](std::int64_t q) {
+    for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = number[v];
+  });
+  for (const DoubledCorner& d : labelled.mesh.doubled)
+    if (d.quad < labelled.first_contact) mesh.doubled.push_back({d.quad, number[d.vertex], d.corner});
+  return mesh;
+}
+
 /// The triangles of a labelled mesh, taken apart.
 class Divided {
  public:
@@ -150,24 +166,12 @@ Result<void> put_labelled_mesh(SurfaceModel& model, const LabelledMesh& labelled
   patch.evidence = model.labelled->evidence;
   patch.extra_positions.reserve(vertices - dual);
   std::vector<std::uint32_t> source(dual);
-  QuadMesh mesh;
-  mesh.embedded = labelled.mesh.embedded;
-  mesh.positions.resize(dual);
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const glm::vec3& place = labelled.mesh.positions[v];
-    if (number[v] >= dual) {
-      patch.extra_positions.push_back(place);
-      continue;
-    }
-    mesh.positions[number[v]] = place;
-    source[number[v]] = labelled.unlabelled[v];
-  }
-  mesh.quads.assign(labelled.mesh.quads.begin(), labelled.mesh.quads.begin() + labelled.first_contact);
-  parallel_for(mesh.quad_count(), 1 << 14, [&](std::int64_t q) {
-    for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = number[v];
-  });
-  for (const DoubledCorner& d : labelled.mesh.doubled)
-    if (d.quad < labelled.first_contact) mesh.doubled.push_back({d.quad, number[d.vertex], d.corner});
+  for (std::size_t v = 0; v < vertices; ++v)
+    if (number[v] >= dual)
+      patch.extra_positions.push_back(labelled.mesh.positions[v]);
+    else
+      source[number[v]] = labelled.unlabelled[v];
+  QuadMesh mesh = mesh_with_numbers(labelled, number, dual);
   mesh.build_incidence();
   model.mesh = std::move(mesh);
   for_each_attribute([&](const auto& a) {
@@ -182,6 +186,10 @@ Result<void> put_labelled_mesh(SurfaceModel& model, const LabelledMesh& labelled
   model.drawing.reset();
   model.settled_sum = 0;
   return {};
+}
+
+QuadMesh mesh_at_air(const LabelledMesh& labelled) {
+  return mesh_with_numbers(labelled, numbers_in_model(labelled), vertices_at_air(labelled));
 }
 
 void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled) {

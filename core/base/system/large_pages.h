@@ -36,6 +36,8 @@ class LargeArray {
   }
   T* data() noexcept { return items_.get(); }
   const T* data() const noexcept { return items_.get(); }
+  T& operator[](std::size_t i) noexcept { return items_[i]; }
+  const T& operator[](std::size_t i) const noexcept { return items_[i]; }
   std::size_t size() const noexcept { return size_; }
   bool empty() const noexcept { return size_ == 0; }
   T* begin() noexcept { return items_.get(); }

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
+#include <unordered_map>
 
 #include "core/base/numbers/disjoint_sets.h"
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 
 namespace dubsar {
 namespace {
 
+constexpr std::int64_t kNodeGrain = 1 << 14;
 constexpr std::int64_t kSlab = BrickMap<std::uint32_t>::kEdge;  ///< slices whose nodes follow each other
 
 constexpr std::uint32_t kLeastIsland = 64;  ///< nodes; fewer in the midst of the other clay are a speck of the cut
@@ -17,37 +20,43 @@ constexpr std::uint32_t kLeastIsland = 64;  ///< nodes; fewer in the midst of th
 /// Nodes of one side that hang together with no clay beyond the band of the same label, few, beside clay of the other.
 std::vector<std::uint32_t> find_islands(const BitVolume& inside, const ContactBand& band,
                                         const std::vector<ClaySide>& side, const EnvelopeBits& labels) {
-  DisjointSets pieces(side.size());
-  std::vector<bool> anchored(side.size(), false), beside(side.size(), false);
+  constexpr std::uint8_t kAnchored = 1, kBeside = 2;
   const Dims d = inside.dims();
-  const auto count = static_cast<std::uint32_t>(side.size());
-  for (std::uint32_t n = 0; n < count; ++n)
+  const auto count = static_cast<std::int64_t>(side.size());
+  ConcurrentSets pieces(side.size());
+  std::vector<std::uint8_t> of_node(side.size(), 0), of_piece(side.size(), 0);
+  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
+    const auto n = static_cast<std::uint32_t>(i);
     each_beside(band.point(n), [&](const glm::ivec3& q) {
       const std::uint32_t m = band.at(q);
       if (m != ContactBand::kNone) {
-        if (side[m] == side[n]) pieces.join(n, m);
-        beside[n] = beside[n] || side[m] != side[n];
+        if (side[m] != side[n])
+          of_node[n] |= kBeside;
+        else if (n < m)
+          pieces.join(n, m);
         return;
       }
       if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= d.x || q.y >= d.y || q.z >= d.z || !inside.get(q.x, q.y, q.z)) return;
       const bool envelope = labels.word(q.x >> 6, q.y, q.z) >> (q.x & 63) & 1u;
-      const bool same = envelope == (side[n] == ClaySide::kEnvelope);
-      anchored[n] = anchored[n] || same;
-      beside[n] = beside[n] || !same;
+      of_node[n] |= envelope == (side[n] == ClaySide::kEnvelope) ? kAnchored : kBeside;
     });
-  std::vector<std::uint32_t> size(count, 0);
-  for (std::uint32_t n = 0; n < count; ++n) {
-    const std::uint32_t root = pieces.root(n);
-    ++size[root];
-    if (anchored[n]) anchored[root] = true;
-    if (beside[n]) beside[root] = true;
-  }
-  std::vector<std::uint32_t> islands;
-  for (std::uint32_t n = 0; n < count; ++n) {
-    const std::uint32_t root = pieces.root(n);
-    if (size[root] < kLeastIsland && !anchored[root] && beside[root]) islands.push_back(n);
-  }
-  return islands;
+  });
+  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
+    const auto n = static_cast<std::uint32_t>(i);
+    std::atomic_ref piece(of_piece[pieces.root(n)]);
+    if ((of_node[n] & ~piece.load(std::memory_order_relaxed)) != 0)
+      piece.fetch_or(of_node[n], std::memory_order_relaxed);
+  });
+  using Nodes = std::vector<std::uint32_t>;
+  Nodes loose =
+      parallel_gather<std::uint32_t>(count, kNodeGrain, [&](std::int64_t begin, std::int64_t end, Nodes& found) {
+        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
+          if (of_piece[pieces.root(n)] == kBeside) found.push_back(n);
+      });
+  std::unordered_map<std::uint32_t, std::uint32_t> size;
+  for (const std::uint32_t n : loose) ++size[pieces.root(n)];
+  std::erase_if(loose, [&](std::uint32_t n) { return size[pieces.root(n)] >= kLeastIsland; });
+  return loose;
 }
 
 /// Runs of clay along x in one row, without those of the band.
@@ -75,14 +84,17 @@ ClayBeyond::ClayBeyond(const BitVolume& inside, const ContactBand& band) : insid
   find_pieces();
   touched_.assign(runs_.size(), false);
   const Dims d = inside.dims();
-  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
-    each_beside(band.point(n), [&](const glm::ivec3& q) {
-      if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= d.x || q.y >= d.y || q.z >= d.z) return;
-      if (!inside.get(q.x, q.y, q.z) || band.at(q) != ContactBand::kNone) return;
-      const std::uint32_t piece = runs_[run_at(q)].piece;
-      touched_[piece] = true;
-      beside_.push_back({n, piece});
-    });
+  using Found = std::vector<Beside>;
+  const auto nodes = static_cast<std::int64_t>(band.nodes.size());
+  beside_ = parallel_gather<Beside>(nodes, kNodeGrain, [&](std::int64_t begin, std::int64_t end, Found& found) {
+    for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
+      each_beside(band.point(n), [&](const glm::ivec3& q) {
+        if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= d.x || q.y >= d.y || q.z >= d.z) return;
+        if (!inside.get(q.x, q.y, q.z) || band.at(q) != ContactBand::kNone) return;
+        found.push_back({n, runs_[run_at(q)].piece});
+      });
+  });
+  for (const Beside& beside : beside_) touched_[beside.piece] = true;
 }
 
 void ClayBeyond::find_runs() {

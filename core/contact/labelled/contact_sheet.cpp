@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -10,7 +11,7 @@
 #include <unordered_set>
 
 #include "core/base/numbers/disjoint_sets.h"
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/mesh/evidence.h"
 
 namespace dubsar {
@@ -18,6 +19,7 @@ namespace {
 
 constexpr float kSheetReach = 1.8f;  ///< more than the half diagonal of a cell
 constexpr float kSameDistance = 1e-4f;
+constexpr std::int64_t kNodesTogether = 1 << 14;
 constexpr int kSlabSlices = 8;  ///< of the grid, that one thread looks at
 
 /// The place of a triangle nearest to a point, and what it lies on: bit i: corner i has a share in it.
@@ -148,23 +150,30 @@ std::vector<float> distances_from_sheet(const ContactBand& band, const Interface
     bool rim = false;
   };
   std::vector<Nearest> nearest(band.nodes.size());
+  constexpr float kRounded = 1e-3f;  // more than kSameDistance and what sums of coordinates are rounded by
   const SheetRim rim(sheet.triangles, dual_positions.size() + sheet.added.size());
   const auto look_around = [&](const Triangle& t, int from, int end) {
     const glm::vec3 a = place(t[0]), b = place(t[1]), c = place(t[2]), n = glm::cross(b - a, c - a);
     const float length = glm::length(n);
     if (!(length > 0.0f)) return;
     const auto [low, high] = SheetBox(a, b, c);
+    const glm::vec3 middle = (a + b + c) / 3.0f;
+    const float radius =
+        kRounded + std::sqrt(std::max({glm::dot(a - middle, a - middle), glm::dot(b - middle, b - middle),
+                                       glm::dot(c - middle, c - middle)}));
     for (int z = std::max(low.z, from); z <= std::min(high.z, end - 1); ++z)
       for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
           const std::uint32_t node = band.at({x, y, z});
           if (node == ContactBand::kNone) continue;
-          const glm::vec3 p(x, y, z);
+          const glm::vec3 p(x, y, z), from_middle = p - middle;
+          Nearest& best = nearest[node];
+          const float nearer = radius + std::min(best.distance, kSheetReach);  // else it is farther away for certain
+          if (glm::dot(from_middle, from_middle) > nearer * nearer) continue;
           const NearestPlace found = nearest_place(p, a, b, c);
           const glm::vec3 off = p - found.place;
           const float distance = glm::length(off);
           if (distance > kSheetReach) continue;
-          Nearest& best = nearest[node];
           if (distance > best.distance + kSameDistance) continue;
           const float cosine = distance > 0.0f ? glm::dot(off, n) / (distance * length) : 1.0f;
           // Of triangles that meet at the nearest place the one that is seen least from its edge tells the side.
@@ -193,23 +202,26 @@ void follow_sheet(const ContactBand& band, const std::vector<float>& distances, 
     each_beside(band.point(n), [&](const glm::ivec3& q) { found = found || band.at(q) == ContactBand::kNone; });
     return found;
   };
-  std::vector<std::uint32_t> front;
-  std::vector<bool> known(side.size(), false);
-  for (std::uint32_t n = 0; n < side.size(); ++n) {
-    if (std::isnan(distances[n])) continue;
-    known[n] = true;
-    if (std::isinf(distances[n]) || at_end(n)) continue;  // as it was
-    const ClaySide now = distances[n] > 0.0f ? ClaySide::kEnvelope : ClaySide::kTablet;
-    if (now != side[n]) front.push_back(n);
-    side[n] = now;
-  }
+  const auto count = static_cast<std::int64_t>(side.size());
+  using Nodes = std::vector<std::uint32_t>;
+  const auto near_sheet = [&](std::uint32_t n) { return !std::isnan(distances[n]); };
+  Nodes front =
+      parallel_gather<std::uint32_t>(count, kNodesTogether, [&](std::int64_t begin, std::int64_t end, Nodes& found) {
+        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n) {
+          if (!near_sheet(n) || std::isinf(distances[n])) continue;  // as it was
+          const ClaySide now = distances[n] > 0.0f ? ClaySide::kEnvelope : ClaySide::kTablet;
+          if (now != side[n] && !at_end(n)) found.push_back(n);
+        }
+      });
+  for (const std::uint32_t n : front) side[n] = distances[n] > 0.0f ? ClaySide::kEnvelope : ClaySide::kTablet;
+  std::vector<bool> gone(side.size(), false);
   for (int step = 0; step < reach; ++step) {
-    std::vector<std::uint32_t> next;
+    Nodes next;
     for (const std::uint32_t n : front)
       each_beside(band.point(n), [&](const glm::ivec3& q) {
         const std::uint32_t m = band.at(q);
-        if (m == ContactBand::kNone || known[m] || side[m] == side[n] || at_end(m)) return;
-        known[m] = true;
+        if (m == ContactBand::kNone || near_sheet(m) || gone[m] || side[m] == side[n] || at_end(m)) return;
+        gone[m] = true;
         side[m] = side[n];
         next.push_back(m);
       });
@@ -217,16 +229,31 @@ void follow_sheet(const ContactBand& band, const std::vector<float>& distances, 
   }
 
   // What has come loose of its clay stays as it was.
-  DisjointSets pieces(side.size());
-  for (std::uint32_t n = 0; n < side.size(); ++n)
+  ConcurrentSets pieces(side.size());
+  parallel_for(count, kNodesTogether, [&](std::int64_t i) {
+    const auto n = static_cast<std::uint32_t>(i);
     for (int axis = 0; axis < 3; ++axis) {
       const std::uint32_t m = band.at(band.point(n) + unit_step(axis));
       if (m != ContactBand::kNone && side[m] == side[n]) pieces.join(n, m);
     }
+  });
   std::vector<std::uint32_t> size(side.size(), 0);
-  for (std::uint32_t n = 0; n < side.size(); ++n) ++size[pieces.root(n)];
-  for (std::uint32_t n = 0; n < side.size(); ++n)
+  parallel_chunks(count, kNodesTogether, [&](std::int64_t begin, std::int64_t end) {
+    std::uint32_t root = 0, same = 0;  // most have the root of the one before
+    const auto add = [&] {
+      if (same > 0) std::atomic_ref(size[root]).fetch_add(same, std::memory_order_relaxed);
+    };
+    for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n) {
+      const std::uint32_t own = pieces.root(n);
+      if (own != root) add(), root = own, same = 0;
+      ++same;
+    }
+    add();
+  });
+  parallel_for(count, kNodesTogether, [&](std::int64_t i) {
+    const auto n = static_cast<std::uint32_t>(i);
     if (size[pieces.root(n)] < least) side[n] = before[n];
+  });
 }
 
 }  // namespace dubsar

@@ -231,7 +231,7 @@ Result<LabelledContact> lay_labelled_contact(SurfaceModel& model, const DividedC
   follow_sheet(clay.band, distances, kSheetSteps, kLeastClay, side);
   keep_whole(clay.band, clay.pores, side);
   for (std::size_t n = 0; n < side.size(); ++n) report.relabelled += side[n] != clay.side[n];
-  report.pockets = relabel_faces(model, clay.graph, clay.faces, side);
+  report.pockets = relabel_faces(model, clay.rest, clay.faces, side);
   LabelledSurface& surface = model.labelled.emplace();
   surface.envelope = clay.beyond.labels(side);
   const PointLabels labels(model.samples.signs, surface.envelope);

@@ -23,8 +23,8 @@ struct DividedClay {
   const ClayBeyond& beyond;
   const Dips& dips;
   const EdgeIndex& index;
-  const FaceGraph& graph;
   const std::vector<BandFace>& faces;
+  const RestPieces& rest;
   const std::vector<ClayCavity>& pores;
   const std::vector<ClaySide>& side;
 };

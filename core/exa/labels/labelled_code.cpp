@@ -110,14 +110,10 @@ Result<LabelledCode> encode_labelled(const SurfaceModel& model, Progress& progre
   LabelledCode code;
   DUBSAR_ASSIGN(code.labels, encode_label_plane(model.samples.signs, surface.envelope, progress));
   DUBSAR_ASSIGN(LabelledMesh base, build_labelled_mesh(model.samples, index, labels, edges, surface.contact, progress));
-  SurfaceModel rebuilt;  // what a reader makes of it
-  rebuilt.labelled = surface;
-  rebuilt.partitions = model.partitions;
-  DUBSAR_TRY(put_labelled_mesh(rebuilt, base));
-  if (rebuilt.mesh.positions.size() != model.mesh.positions.size() ||
+  if (base.mesh.positions.size() != model.mesh.positions.size() + surface.evidence.size() ||
       model.patches.front().extra_positions.size() < surface.evidence.size())
     return fail(ErrorKind::kInternal, "exa: the mesh of {} vertices is not the one that the labels give ({} vertices)",
-                model.mesh.positions.size(), rebuilt.mesh.positions.size());
+                model.mesh.positions.size(), base.mesh.positions.size() - surface.evidence.size());
   DUBSAR_ASSIGN(code.offsets, encode_contact_offsets({model.samples, index, labels, edges}, surface.contact, progress));
   const InnerMesh inner = inner_mesh(base);
   code.evidence = encode_labels(ExaLabel::kEnum, inner.mesh, surface.evidence, progress);
@@ -130,7 +126,9 @@ Result<LabelledCode> encode_labelled(const SurfaceModel& model, Progress& progre
   }
   code.counts = {static_cast<std::int64_t>(surface.contact.size()), static_cast<std::int64_t>(surface.evidence.size()),
                  contact_sum_of(model)};
-  code.rebuilt = std::move(rebuilt.mesh);
+  places = {};
+  base.mesh.first_incident = {}, base.mesh.incident = {};
+  code.rebuilt = mesh_at_air(base);
   if (progress.cancelled()) return cancelled_error();
   return code;
 }

@@ -39,5 +39,19 @@ TEST(BrickMap, BricksAreMadeWhereSomebodyWrites) {
   EXPECT_TRUE(map.has_brick(2, 1, 7));
 }
 
+TEST(BrickMap, ABrickHasItsPointsAlongXThenYThenZ) {
+  BrickMap<int> map({21, 17, 30}, -1);
+  map.reserve(2);
+  map.add_brick(2, 1, 3);
+  map.at(20, 11, 29) = 5;
+  map.brick(2, 1, 3)[(1 * 8 + 7) * 8 + 3] = 6;
+  EXPECT_EQ(map.brick(2, 1, 3)[(5 * 8 + 3) * 8 + 4], 5);
+  EXPECT_EQ(map.get(19, 15, 25), 6);
+  EXPECT_EQ(map.brick(2, 1, 3)[5], -1);  // beyond the grid
+  EXPECT_EQ(map.brick(0, 0, 0), nullptr);
+  EXPECT_EQ(map.brick(-1, 0, 0), nullptr);
+  EXPECT_EQ(map.brick(3, 1, 3), nullptr);
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -47,6 +47,8 @@ struct CavityScene {
     return heights;
   }
 
+  RestPieces rest() const { return rest_pieces(model, graph, faces); }
+
  private:
   static SurfaceModel make(const scene::Field& air) {
     SurfaceModel made = scene::extract_model({kEdge, kEdge, kEdge}, [&](const glm::vec3& p) {
@@ -80,7 +82,7 @@ TEST(CavitiesOffContact, APoreInTheClayIsOneAndAWedgeThatOpensToTheContactIsNot)
   const CavityScene scene([](const glm::vec3& p) {
     return std::max(pore(p), wedge(p, {24.2f, 32.1f, kPlane + 0.3f}));
   });
-  const auto off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);
+  const auto off = cavities_off_contact(scene.rest(), scene.band, scene.faces);
   ASSERT_EQ(off.size(), 1u);
   const auto [low, high] = scene.heights(off[0]);
   EXPECT_GE(low, 20);
@@ -89,12 +91,12 @@ TEST(CavitiesOffContact, APoreInTheClayIsOneAndAWedgeThatOpensToTheContactIsNot)
 
 TEST(CavitiesOffContact, APocketOnAPatchThatMissesItsMouthIsNone) {
   const CavityScene scene([](const glm::vec3& p) { return wedge(p, {32.2f, 32.1f, kPlane - 2.7f}); });
-  EXPECT_TRUE(cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces).empty());
+  EXPECT_TRUE(cavities_off_contact(scene.rest(), scene.band, scene.faces).empty());
 }
 
 TEST(KeepWhole, TheClayAtACavityIsOfOneSide) {
   const CavityScene scene(pore);
-  const std::vector<ClayCavity> off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);
+  const std::vector<ClayCavity> off = cavities_off_contact(scene.rest(), scene.band, scene.faces);
   ASSERT_EQ(off.size(), 1u);
   for (const ClaySide most : {ClaySide::kTablet, ClaySide::kEnvelope}) {
     const ClaySide other = most == ClaySide::kTablet ? ClaySide::kEnvelope : ClaySide::kTablet;
@@ -118,7 +120,7 @@ TEST(KeepWhole, TheClayAtACavityIsOfOneSide) {
 
 TEST(DivideClay, GoesRoundACavityThatIsWhole) {
   const CavityScene scene(pore);
-  const auto off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);
+  const auto off = cavities_off_contact(scene.rest(), scene.band, scene.faces);
   ASSERT_EQ(off.size(), 1u);
   // Clay that is dark by chance from the patch down to the pore, as wide as it.
   Dips dips;
