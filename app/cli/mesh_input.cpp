@@ -147,9 +147,9 @@ Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
 }
 
 Result<TriMesh> load_written_part(const std::string& path, const std::string& part, const std::string& unit,
-                                  Progress& progress) {
+                                  Progress& progress, bool photo_detail) {
   DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(unit));
-  const MeshReadOptions foreign{unit_mm, true};
+  const MeshReadOptions foreign{unit_mm, photo_detail};
   if (part != "auto" && part != "all") return load_mesh({path, {part}, true, foreign}, progress);
   if (part == "auto")
     if (Result<TriMesh> tablet = load_mesh({path, {"tablet"}, true, foreign}, progress);

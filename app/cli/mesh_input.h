@@ -30,9 +30,10 @@ Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
                           const std::function<void(TriMesh)>& tell_coarse);
 
 /// What was written on, of a file: `part` is "auto" (the tablet where there is one, else everything), "all", or a name;
-/// `unit` as --unit says it. Errors of load_mesh(), mesh_unit_mm().
+/// `unit` as --unit says it. Errors of load_mesh(), mesh_unit_mm(). `photo_detail`: for pictures; where the shape
+/// counts triangles stay as fine as they were measured.
 Result<TriMesh> load_written_part(const std::string& path, const std::string& part, const std::string& unit,
-                                  Progress& progress);
+                                  Progress& progress, bool photo_detail = false);
 
 /// "--unit": what one unit of a mesh file is.
 inline constexpr const char* kUnitHelp =

@@ -180,7 +180,7 @@ Result<VerbResult> run(const FatCrossRequest& given, Progress& progress) {
   for (const std::string& style : styles) DUBSAR_TRY(shading_preset(style));
   DUBSAR_TRY(check_told(options.look.told));
   DUBSAR_TRY(check_besides(options, styles));
-  DUBSAR_ASSIGN(const TriMesh mesh, load_written_part(options.in, options.part, options.unit, progress));
+  DUBSAR_ASSIGN(const TriMesh mesh, load_written_part(options.in, options.part, options.unit, progress, true));
   if (!mesh.frame.input_voxel.known() && !is_exa_file(options.in))
     log(LogLevel::kWarning, fmt::format("{} does not state its units; taken as millimetres", options.in));
   if (!mesh.frame.input_voxel.known() && is_exa_file(options.in))
