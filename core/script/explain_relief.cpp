@@ -13,7 +13,6 @@
 namespace dubsar {
 namespace {
 
-constexpr int kStartDirections = 24;
 constexpr std::size_t kMostWays = 4;
 constexpr double kWaysApart = 0.6;        // radians between two ways that a place is explained
 constexpr double kClearMargin = 6e-4;     // a tenth of what a usual wedge explains
@@ -22,11 +21,8 @@ constexpr double kNeighbourWidths = 4.5;  // farther imprints explain nothing of
 // Median widths: the broadest of 1,346 that were pressed is 1.5. What is broader explains a step beside a patch or the
 // tablet's edge, and takes the wedges beside it with it.
 constexpr double kMostBreadth = 1.75;
-constexpr FitOptions kAlone{0.5, 12};  // a neighbour only digs deeper
-constexpr FitOptions kTogether{1.0, 8};
-
-double angle_apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
-
+constexpr double kCostShare = 0.2;  // of what a usual wedge explains
+constexpr double kCostLeast = 0.5;  // of the most: clay that nobody wrote on has usual ones, too, that explain little
 double level_at(const WedgeSite& site, double x, double y) {
   double best = 1e30, level = 0.0;
   for (std::size_t i = 0; i < site.samples.size(); ++i) {
@@ -58,7 +54,7 @@ void ReliefExplanation::fit_alone(std::size_t k) {
   Fit& fit = fits_[k];
   if (site.samples.size() < 100) return;
   const UsualImprint usual = scale_.usual();
-  std::vector<ImprintStart> starts = imprint_starts(site.coarse, usual, site.x, site.y, kStartDirections, kAlone);
+  std::vector<ImprintStart> starts = imprint_starts(site.coarse, usual, site.x, site.y, kStartDirections, kFitAlone);
   std::stable_sort(starts.begin(), starts.end(),
                    [](const ImprintStart& a, const ImprintStart& b) { return a.energy < b.energy; });
   const auto differs = [&](double angle) {
@@ -70,11 +66,11 @@ void ReliefExplanation::fit_alone(std::size_t k) {
     if (fit.ways.size() == kMostWays) break;
     if (differs(start.imprint.p[Imprint::kAngle])) fit.ways.push_back(start);
   }
-  for (ImprintStart& way : fit.ways) way.energy = fit_imprint(way.imprint, site.samples, usual, kAlone);
+  for (ImprintStart& way : fit.ways) way.energy = fit_imprint(way.imprint, site.samples, usual, kFitAlone);
   std::stable_sort(fit.ways.begin(), fit.ways.end(),
                    [](const ImprintStart& a, const ImprintStart& b) { return a.energy < b.energy; });
   fit.imprint = fit.ways.front().imprint;
-  fit.gain = empty_energy(site.samples, kAlone) - fit.ways.front().energy;
+  fit.gain = empty_energy(site.samples, kFitAlone) - fit.ways.front().energy;
 }
 
 void ReliefExplanation::find_neighbours() {
@@ -148,12 +144,12 @@ void ReliefExplanation::add_other(const WedgeSite& site, const PlacedImprint& ot
 
 double ReliefExplanation::gain_beside(std::size_t k, const Imprint& imprint, DepthSamples& samples) const {
   look_beside(k, samples);
-  return empty_energy(samples, kTogether) - imprint_energy(imprint, samples, scale_.usual(), kTogether);
+  return empty_energy(samples, kFitTogether) - imprint_energy(imprint, samples, scale_.usual(), kFitTogether);
 }
 
 double ReliefExplanation::doubt(const WedgeSite& site, const Imprint& imprint) const {
-  // Half of what tells a Winkelhaken from itself turned by a third, on phantoms; a hundredth of what a tail does.
-  constexpr double kNat = 4e-5;
+  // What tells a Winkelhaken from itself turned by a third, on phantoms; a fiftieth of what a tail does.
+  constexpr double kNat = 8e-5;
   if (!surprise_) return 0.0;
   const double angle = imprint.p[Imprint::kAngle];
   return kNat * surprise_(std::cos(angle) * site.right + std::sin(angle) * site.up, site.out, imprint);
@@ -166,7 +162,7 @@ void ReliefExplanation::fit_beside(std::size_t k, Fit& out) const {
   std::vector<ImprintStart> ways, plain;  // with what is surprising about them, and without
   const auto add = [&](Imprint start) {
     ImprintStart way{start, 0.0};
-    way.energy = fit_imprint(way.imprint, samples, scale_.usual(), kTogether);
+    way.energy = fit_imprint(way.imprint, samples, scale_.usual(), kFitTogether);
     plain.push_back(way);
     way.energy += doubt(sites_[k], way.imprint);
     ways.push_back(way);
@@ -190,7 +186,7 @@ void ReliefExplanation::fit_beside(std::size_t k, Fit& out) const {
   std::stable_sort(ways.begin(), ways.end(),
                    [](const ImprintStart& a, const ImprintStart& b) { return a.energy < b.energy; });
   out.imprint = ways.front().imprint;
-  out.gain = empty_energy(samples, kTogether) - ways.front().energy;
+  out.gain = empty_energy(samples, kFitTogether) - ways.front().energy;
   if (clear) return;
   out.margin = out.gain;
   const double angle = out.imprint.p[Imprint::kAngle];
@@ -208,86 +204,6 @@ void ReliefExplanation::fit_beside(std::size_t k, Fit& out) const {
       out.margin = std::min(out.margin, way.energy - ways.front().energy);
 }
 
-ReliefExplanation::Second ReliefExplanation::second_in(std::size_t k) const {
-  constexpr double kAside = 0.35;  // widths from one deepest place to the other
-  Second out;
-  DepthSamples samples = sites_[k].samples;
-  look_beside(k, samples);
-  const std::vector<float> outside = samples.others;
-  const UsualImprint usual = scale_.usual();
-  out.first = fits_[k].imprint;
-  const double alone = imprint_energy(out.first, samples, usual, kTogether);
-  const auto beside = [&](const Imprint& imprint, DepthSamples& to) {
-    std::vector<float> model;
-    imprint_depths(imprint, to, model);
-    for (std::size_t i = 0; i < model.size(); ++i) to.others[i] = std::max(outside[i], model[i]);
-  };
-  beside(out.first, samples);
-  DepthSamples coarse = sites_[k].coarse;
-  for (std::size_t i = 0, j = 0; i < coarse.size(); ++i) {
-    while (samples.x[j] != coarse.x[i] || samples.y[j] != coarse.y[i]) ++j;
-    coarse.others[i] = samples.others[j];
-  }
-  ImprintStart best;
-  best.energy = 1e30;
-  const double x = out.first.p[Imprint::kX], y = out.first.p[Imprint::kY];
-  for (int place = 0; place < 9; ++place) {
-    const double angle = std::numbers::pi * place / 4.0, far = place == 8 ? 0.0 : kAside;
-    for (const ImprintStart& start : imprint_starts(coarse, usual, x + far * std::cos(angle), y + far * std::sin(angle),
-                                                    kStartDirections / 2, kTogether))
-      if (start.energy < best.energy) best = start;
-  }
-  out.second = best.imprint;
-  double energy = 0.0;
-  for (int turn = 0; turn < 3; ++turn) {
-    beside(out.first, samples);
-    energy = fit_imprint(out.second, samples, usual, kTogether);
-    beside(out.second, samples);
-    energy = fit_imprint(out.first, samples, usual, kTogether);
-  }
-  out.gain = alone - energy;
-  return out;
-}
-
-void ReliefExplanation::split(double cost) {
-  std::vector<std::size_t> active;
-  for (std::size_t k = 0; k < fits_.size(); ++k)
-    if (fits_[k].active) active.push_back(k);
-  std::vector<Second> seconds(active.size());
-  parallel_for(static_cast<std::int64_t>(active.size()), 2, [&](std::int64_t i) {
-    seconds[static_cast<std::size_t>(i)] = second_in(active[static_cast<std::size_t>(i)]);
-  });
-  std::vector<std::size_t> order(active.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return seconds[a].gain > seconds[b].gain; });
-  for (const std::size_t i : order) {
-    if (seconds[i].gain < cost) break;
-    const std::size_t k = active[i];
-    // Another site may have explained the same since.
-    DepthSamples samples = sites_[k].samples;
-    look_beside(k, samples);
-    const double alone = imprint_energy(fits_[k].imprint, samples, scale_.usual(), kTogether);
-    std::vector<float> model;
-    imprint_depths(seconds[i].first, samples, model);
-    for (std::size_t s = 0; s < model.size(); ++s) samples.others[s] = std::max(samples.others[s], model[s]);
-    const double gain = alone - imprint_energy(seconds[i].second, samples, scale_.usual(), kTogether);
-    if (gain < cost) continue;
-    fits_[k].imprint = seconds[i].first;
-    Fit fresh;
-    fresh.imprint = seconds[i].second;
-    fresh.ways = {{seconds[i].second, 0.0}};
-    fresh.active = true;
-    fresh.gain = gain;
-    const auto made = static_cast<std::uint32_t>(sites_.size());
-    sites_.push_back(WedgeSite(sites_[k]));
-    fits_.push_back(fresh);
-    near_.push_back(near_[k]);
-    near_.back().push_back(static_cast<std::uint32_t>(k));
-    for (const std::uint32_t j : near_.back()) near_[j].push_back(made);
-  }
-}
-
 void ReliefExplanation::drop_broad() {
   std::vector<double> widths;
   for (const Fit& fit : fits_)
@@ -296,7 +212,20 @@ void ReliefExplanation::drop_broad() {
   for (Fit& fit : fits_) fit.active = fit.active && fit.imprint.width() <= most;
 }
 
-void ReliefExplanation::explain(int rounds, double cost) {
+double ReliefExplanation::usual_gain() const {
+  std::vector<double> gains;
+  for (const Fit& fit : fits_)
+    if (fit.active) gains.push_back(fit.gain);
+  return gains.empty() ? 0.0 : median(gains);
+}
+
+void ReliefExplanation::explain(int rounds, double most_cost) {
+  double cost = most_cost;
+  const auto know_cost = [&] {
+    if (const double usual = usual_gain(); usual > 0.0)
+      cost = std::clamp(kCostShare * usual, kCostLeast * most_cost, most_cost);
+  };
+  know_cost();
   std::vector<std::size_t> order(sites_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto by_gain = [&](bool most_first) {
@@ -316,6 +245,7 @@ void ReliefExplanation::explain(int rounds, double cost) {
   };
   take_in();
   for (int round = 0; round < rounds; ++round) {
+    know_cost();
     std::vector<Fit> next = fits_;
     parallel_for(static_cast<std::int64_t>(sites_.size()), 2,
                  [&](std::int64_t i) { fit_beside(static_cast<std::size_t>(i), next[static_cast<std::size_t>(i)]); });

@@ -39,9 +39,12 @@ class ReliefExplanation {
   /// Fits each place alone, to begin with. `surface` must outlive it. Cost: some ms a place, all threads.
   ReliefExplanation(SurfaceLevels& surface, const WedgeScale& scale, const std::vector<DeepPlace>& places);
 
-  /// Begins with what explains most, and goes on until nothing gains `cost` any more: each round fits all imprints
-  /// anew beside the others, drops those that gain less, turns those that explain more otherwise, and takes in others.
-  void explain(int rounds, double cost);
+  /// Begins with what explains most, and goes on until nothing gains a fifth of what a usual one does any more, at most
+  /// `most_cost`: each round fits all imprints anew beside the others, drops those that gain less, turns those that
+  /// explain more otherwise, splits those that are two, and takes in others.
+  void explain(int rounds, double most_cost);
+  /// What a wedge of this surface explains in the median; 0 without any.
+  double usual_gain() const;
 
   /// From the next round on: how surprising a direction is at a place, in nats. What fits as well two ways is told by
   /// it, what has a tail hardly is. Called by several threads at once.
@@ -82,9 +85,10 @@ class ReliefExplanation {
   /// Another imprint in the same window, and how the first one looks beside it; nothing where that gains too little.
   struct Second {
     Imprint first, second;
-    double gain = 0.0;
+    double gain = 0.0, least = 0.0;  ///< that two have to explain more than one
   };
-  Second second_in(std::size_t k) const;
+  /// `both`: the first one is looked for anew, too, in any direction.
+  Second second_in(std::size_t k, bool both) const;
   void split(double cost);
   double gain_beside(std::size_t k, const Imprint& imprint, DepthSamples& samples) const;
   PlacedImprint placed_at(std::size_t k) const;

@@ -124,6 +124,8 @@ bool solve(std::array<std::array<double, 8>, 8> m, std::array<double, 8> v, std:
 
 }  // namespace
 
+double angle_apart(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
+
 double Imprint::width() const { return std::exp(p[kWidth]); }
 double Imprint::depth() const { return std::exp(p[kDepth]); }
 double Imprint::back() const { return std::exp(p[kBack] + p[kWidth]); }

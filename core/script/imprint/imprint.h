@@ -45,6 +45,13 @@ struct FitOptions {
   int rounds = 12;      ///< of Gauss and Newton
 };
 
+inline constexpr FitOptions kFitAlone{0.5, 12};  ///< a neighbour only digs deeper
+inline constexpr FitOptions kFitTogether{1.0, 8};
+inline constexpr int kStartDirections = 24;
+
+/// Radians between two directions, 0 to pi.
+double angle_apart(double a, double b);
+
 /// Depth of the model at each sample, 0 beside it.
 void imprint_depths(const Imprint& imprint, const DepthSamples& samples, std::vector<float>& out);
 
