@@ -40,7 +40,8 @@ usage() {
               ./do bench wedges [--quick | --size XxYxZ] [--seed N]: what is read of a hidden tablet, beside what is wanted
               ./do bench ablation [--size XxYxZ] [--seed N] [--seeds COUNT]: what each rule of the contact is worth, with the spread
               ./do bench invariance [--seeds N]: the same object cropped, mirrored, with axes exchanged: how far answers lie apart
-              ./do bench script [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS]: wedges that are found and drawn, beside what was pressed
+              ./do bench script [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--scanner WORDS] [--unruled] [--unwritten] [--causes]: wedges that are
+                  found and drawn, beside what was pressed (--help says all options); --causes counts what was missed, by place and by cause
               ./do bench seals [--size XxYxZ] [--seed N] [--seeds COUNT] [--lost SHARE]: the average of three impressions, beside the best of them
               ./do bench crossings FILE.exa...: pairs of triangles that cross or touch, partition by partition
               ./do bench wedges --scanner [--size XxYxZ] [--seed N] [--seeds COUNT]: the same of scans with an X-ray scanner's artefacts

@@ -52,7 +52,10 @@ ScriptArguments parse_script(int argc, char** argv) {
   ScriptArguments a;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
-    if (word == "--unwritten") {
+    if (word == "--help") {
+      fmt::print("{}", kHelp);
+      std::exit(0);
+    } else if (word == "--unwritten") {
       a.unwritten = true;
     } else if (word == "--unruled") {
       a.unruled = true;

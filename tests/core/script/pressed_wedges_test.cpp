@@ -3,11 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <random>
+#include <regex>
+#include <string>
 
+#include "core/script/copy_sheet.h"
 #include "core/script/find_wedges.h"
 #include "core/script/hand_copy.h"
 
@@ -197,6 +202,67 @@ TEST(PressedWedges, TheHandCopyShowsThemWhereTheyAre) {
       EXPECT_NEAR(glm::distance(head[0], head[1]), glm::distance(w.corner_mm[0], w.corner_mm[1]), 0.02) << group.id;
     }
   EXPECT_EQ(drawn, found->wedges.size());
+}
+
+/// Numbers of an SVG path, as x, y pairs.
+std::vector<glm::dvec2> path_points(const std::string& d) {
+  std::vector<double> numbers;
+  static const std::regex number("-?[0-9]+\\.[0-9]+");
+  for (std::sregex_iterator it(d.begin(), d.end(), number), end; it != end; ++it)
+    numbers.push_back(std::stod(it->str()));
+  std::vector<glm::dvec2> out;
+  for (std::size_t k = 0; k + 1 < numbers.size(); k += 2) out.push_back({numbers[k], numbers[k + 1]});
+  return out;
+}
+
+/// The drawing laid over the side as it is seen orthographically: by its outline, which is the plate's. What the file
+/// says is what was pressed: the corners of the stylus's head.
+TEST(PressedWedges, CornersOfHeadsInTheSvgLieWhereTheStylusHadThem) {
+  const std::vector<Pressed> page = page_of_wedges();
+  const TriMesh mesh = plate(page);
+  Progress progress;
+  const auto found = find_wedges(mesh, {}, progress);
+  ASSERT_TRUE(found) << found.error().message;
+  HandCopyOptions options;
+  options.whole_plate = false;
+  const auto sheet = hand_copy(mesh, *found, options);
+  ASSERT_TRUE(sheet) << sheet.error().message;
+  const std::string svg = svg_of(*sheet);
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(svg, match, std::regex(R"re(class="outline" d="([^"]*)")re")));
+  glm::dvec2 low(1e30), high(-1e30);
+  for (const glm::dvec2& q : path_points(match[1].str())) low = glm::min(low, q), high = glm::max(high, q);
+  // As exact as a cell of the outline's mask on either side.
+  EXPECT_NEAR(high.x - low.x, 2 * kPlateHalf, 0.21);
+  EXPECT_NEAR(high.y - low.y, 2 * kPlateHalf, 0.21);
+  const TabletFrame& frame = found->sides.frame();
+  ASSERT_GT(frame.front.z, 0.9);
+  const glm::dvec2 middle = 0.5 * (low + high);
+  const auto on_paper = [&](const glm::dvec3& p) {  // the plate's middle is at 0
+    return glm::dvec2(middle.x + glm::dot(p, frame.right), middle.y - glm::dot(p, frame.up));
+  };
+  std::vector<std::array<glm::dvec2, 2>> pressed;
+  for (const Pressed& w : page) {
+    const glm::dvec3 along(std::cos(w.angle), std::sin(w.angle), 0.0), across(-along.y, along.x, 0.0);
+    const glm::dvec3 head = glm::dvec3(w.x, w.y, 0.0) - kPlateBack * along;
+    pressed.push_back({on_paper(head + 0.5 * kPlateWidth * across), on_paper(head - 0.5 * kPlateWidth * across)});
+  }
+  double squares = 0.0, corners = 0.0;
+  static const std::regex head(R"re(class="head" d="([^"]*)")re");
+  for (std::sregex_iterator it(svg.begin(), svg.end(), head), end; it != end; ++it) {
+    const std::vector<glm::dvec2> drawn = path_points((*it)[1].str());
+    ASSERT_EQ(drawn.size(), 2U);
+    double best = 1e30;
+    for (const auto& [left, right] : pressed)
+      for (const bool turned : {false, true}) {
+        const glm::dvec2 a = drawn[turned ? 1 : 0] - left, b = drawn[turned ? 0 : 1] - right;
+        best = std::min(best, glm::dot(a, a) + glm::dot(b, b));
+      }
+    squares += best, corners += 2.0;
+  }
+  EXPECT_GE(corners, 2 * 0.95 * static_cast<double>(page.size()));
+  RecordProperty("rms_mm", std::to_string(std::sqrt(squares / corners)));
+  EXPECT_LE(std::sqrt(squares / corners), 0.15);
 }
 
 }  // namespace

@@ -90,6 +90,11 @@ WedgeScore judge_wedges(const phantom::Phantom& truth, std::span<const ScriptWed
     score.depth_ratios.push_back(f.depth_mm / voxel / w.depth);
     score.direction_deg.push_back(degrees_between(f.direction, w.tail, w.outward));
     score.head_off_vox.push_back(glm::distance(f.head_mm / voxel, w.place.head));
+    const glm::dvec3 half = w.head_half_width * glm::cross(w.outward, w.tail);
+    for (const auto& [corner, side] : {std::pair(f.corner_mm[0], 1.0), std::pair(f.corner_mm[1], -1.0)}) {
+      const glm::dvec3 off = corner / voxel - (w.place.head + side * half);
+      score.corner_squares += glm::dot(off, off) / 2.0;
+    }
     const std::array<int, 2> of{static_cast<int>(f.side), 100 * f.column + f.line};
     const int pressed = 1000 * static_cast<int>(w.side) + w.line;
     ++lines[of][pressed];
@@ -132,6 +137,7 @@ void WedgeScore::add(const WedgeScore& o) {
   wanted += o.wanted, found += o.found, drawn += o.drawn, real += o.real, placed += o.placed;
   kind_right += o.kind_right, line_right += o.line_right;
   const auto join = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  corner_squares += o.corner_squares;
   pairs += o.pairs, pairs_told += o.pairs_told, pairs_right += o.pairs_right;
   join(pair_clear, o.pair_clear);
   join(depth_ratios, o.depth_ratios);
@@ -152,10 +158,10 @@ std::string WedgeScore::text() const {
   for (const double r : depth_ratios) off.push_back(std::abs(r - 1.0));
   std::string out = fmt::format(
       "wanted {} found {} ({:.3f}); drawn {} real {} ({:.3f}) placed {}; kind {:.3f}; line {:.3f}; depth ratio {:.3f}, "
-      "error {:.3f}; direction {:.1f} deg, head {:.2f} vox;",
+      "error {:.3f}; direction {:.1f} deg, head {:.2f} vox, corners RMS {:.2f} vox;",
       wanted, found, recall(), drawn, real, precision(), placed, kind_share(),
       found ? static_cast<double>(line_right) / found : 0.0, middle_of(depth_ratios), middle_of(off),
-      middle_of(direction_deg), middle_of(head_off_vox));
+      middle_of(direction_deg), middle_of(head_off_vox), found ? std::sqrt(corner_squares / found) : 0.0);
   out += fmt::format(" of {} pairs order of {} told, {} right;", pairs, pairs_told, pairs_right);
   for (std::size_t k = 0; k < wanted_of_kind.size(); ++k)
     if (wanted_of_kind[k])

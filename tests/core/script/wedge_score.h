@@ -44,8 +44,9 @@ struct WedgeScore : WedgeCounts, PairCounts {
   int line_right = 0;  ///< of `found`: in the line that was found for its own; each line that was found is one of
                        ///< those pressed, no two the same
   std::vector<double> depth_ratios, direction_deg, head_off_vox;  ///< of `found`: measured over true, and errors
-  std::vector<JudgedWedge> judged;                                ///< one for each found wedge
-  std::vector<int> missed;  ///< wedges of the phantom that were wanted and not found
+  double corner_squares = 0.0;  ///< of `found`: mean square of how far the corners of the head are off, voxels, summed
+  std::vector<JudgedWedge> judged;  ///< one for each found wedge
+  std::vector<int> missed;          ///< wedges of the phantom that were wanted and not found
   double recall() const { return wanted ? static_cast<double>(found) / wanted : 0.0; }
   double precision() const { return drawn ? static_cast<double>(real) / drawn : 1.0; }
   double kind_share() const { return found ? static_cast<double>(kind_right) / found : 0.0; }
