@@ -69,6 +69,15 @@ struct Wedge {
   bool has_air() const noexcept { return state != WedgeCase::kFilled; }
 };
 
+/// A line that was ruled, in input voxel coordinates: places on the surface before it was, from left to right, as far as
+/// at least half of its depth is there.
+struct RuledLine {
+  Owner owner = Owner::kTablet;
+  Side side = Side::kObverse;
+  std::vector<glm::dvec3> points;
+  double depth = 0.0;  ///< voxels, where it is deepest
+};
+
 /// A band of the envelope that the seal was rolled along, in input voxel coordinates.
 struct Sealing {
   Side side = Side::kObverse;
@@ -108,6 +117,7 @@ class Phantom {
   bool overlap(std::size_t first, std::size_t second) const;
   /// Part of the tablet's surface where there is no air between it and the envelope, or a film of it, 0..1.
   double glued_fraction() const noexcept { return glued_fraction_; }
+  std::vector<RuledLine> ruled_lines() const;
   /// Of the envelope: obverse (above, below), reverse, upper edge, left edge.
   std::vector<Sealing> sealings() const;
   /// Of a point of the surface in the `sealing`-th band, within its height.

@@ -17,6 +17,7 @@ namespace {
 // mm on paper; weights of lines as hand copies have them (docs/edition.md).
 constexpr double kCopyMargin = 8.0, kCopyBetween = 6.0, kCopyTitle = 8.0, kCopyFoot = 16.0;
 constexpr double kCopyOutline = 0.18, kCopyStroke = 0.13, kCopyHatch = 0.08, kCopyHatchSpacing = 0.8;
+constexpr double kCopyRuling = 0.1;  // thinner than wedges
 constexpr double kCopyCell = 0.1, kCopyTolerance = 0.07;
 constexpr double kCopyLeastHead = 0.3;
 constexpr double kCopyDepthStroke = 0.1, kCopyDepthMore = 0.25, kCopyMostStroke = 0.5;
@@ -93,7 +94,7 @@ CopyGroup wedge_group(const ScriptWedge& w, const SideDrawing& side, const HandC
   CopyGroup group;
   const std::string kind(name_in(kWedgeKinds, w.kind));
   group.id = fmt::format("w{}", w.order);
-  group.classes = fmt::format("wedge {} machine", kind);
+  group.classes = fmt::format("wedge {} {}", kind, name_in(kWedgeBys, w.by));
   group.data = {{"line", fmt::format("{} {}", name_in(kTextSides, w.side), w.line)},
                 {"depth", fmt::format("{:.3f}", w.depth_mm)},
                 {"confidence", fmt::format("{:.2f}", w.confidence)},
@@ -155,6 +156,21 @@ void draw_ground(const std::vector<glm::dvec3>& points, const TriMesh& mesh, con
   for (const bool rising : {false, true})
     for (const auto& line : unknown.hatch(kCopyHatchSpacing, rising))
       inferred.paths.push_back(path_of("hatch", on_paper(line), kCopyHatch));
+}
+
+/// One group a ruling.
+void draw_rulings(const std::vector<ScriptRuling>& rulings, const SideDrawing& side, CopyLayer& layer) {
+  for (const ScriptRuling& ruling : rulings) {
+    if (ruling.side != side.side) continue;
+    CopyGroup group;
+    group.id = fmt::format("{}-{}", layer.id, layer.groups.size() + 1);
+    group.classes = "ruling machine";
+    group.data = {{"depth", fmt::format("{:.3f}", ruling.depth_mm)}};
+    std::vector<glm::dvec2> line;
+    for (const glm::dvec3& p : ruling.line_mm) line.push_back(side.paper(p));
+    group.paths.push_back(path_of("ruling", line, kCopyRuling));
+    layer.groups.push_back(std::move(group));
+  }
 }
 
 void number_lines_of(const SideDrawing& side, const std::vector<ScriptWedge>& wedges, CopyLayer& numbers) {
@@ -259,6 +275,9 @@ Result<CopySheet> hand_copy(const TriMesh& mesh, const WedgesFound& found, const
     any_inferred = any_inferred || !inferred.paths.empty();
     sheet.layers.push_back(std::move(outline));
     if (!inferred.paths.empty()) sheet.layers.push_back(std::move(inferred));
+    CopyLayer ruled{name + "-rulings", name + " rulings", name + " rulings", {}, {}, {}};
+    draw_rulings(options.rulings, side, ruled);
+    if (!ruled.groups.empty()) sheet.layers.push_back(std::move(ruled));
     for (std::size_t k = 0; k < kWedgeKindCount; ++k) {
       const std::string kind(name_in(kWedgeKinds, static_cast<WedgeKind>(k)));
       CopyLayer layer{name + "-" + kind, name + " " + kind, name + " " + kind, {}, {}, {}};

@@ -24,14 +24,15 @@ std::string wedges_csv(std::span<const ScriptWedge> wedges) {
   const auto point = [](const glm::dvec3& p) { return fmt::format("{:.4f},{:.4f},{:.4f}", p.x, p.y, p.z); };
   const auto before = [](const ScriptWedge& w) { return fmt::format("{}", fmt::join(orders_before(w), ";")); };
   for (const ScriptWedge& w : wedges)
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.1f},{},{:.3f},{},\n", w.order,
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.1f},{},{:.3f},{},{},\n", w.order,
                        name_in(kTextSides, w.side), w.column, w.line, w.order, name_in(kWedgeKinds, w.kind),
                        point(w.head_mm), point(w.tip_mm), point(w.tail_mm), point(w.normal), w.depth_mm, w.length_mm,
-                       w.width_mm, w.opening_deg, before(w), w.confidence, name_in(kEvidences, w.evidence));
+                       w.width_mm, w.opening_deg, before(w), w.confidence, name_in(kEvidences, w.evidence),
+                       name_in(kWedgeBys, w.by));
   return sealed_text(std::move(out));
 }
 
-std::string wedges_json(const WedgesFound& found, const std::string& made_by) {
+std::string wedges_json(const WedgesFound& found, const std::string& made_by, std::span<const ScriptRuling> rulings) {
   const auto rounded = [](double v, double digits) { return std::round(v * digits) / digits; };
   const auto point = [&](const glm::dvec3& p) {
     return nlohmann::json::array({rounded(p.x, 1e4), rounded(p.y, 1e4), rounded(p.z, 1e4)});
@@ -64,7 +65,16 @@ std::string wedges_json(const WedgesFound& found, const std::string& made_by) {
                              {"pressed_after", orders_before(w)},
                              {"confidence", rounded(w.confidence, 1e3)},
                              {"evidence", name_in(kEvidences, w.evidence)},
-                             {"source", "machine"}});
+                             {"by", name_in(kWedgeBys, w.by)}});
+  out["rulings"] = nlohmann::ordered_json::array();
+  for (const ScriptRuling& ruling : rulings) {
+    nlohmann::ordered_json places = nlohmann::ordered_json::array();
+    for (const glm::dvec3& p : ruling.line_mm) places.emplace_back(nlohmann::ordered_json(point(p)));
+    out["rulings"].push_back({{"side", name_in(kTextSides, ruling.side)},
+                              {"depth_mm", rounded(ruling.depth_mm, 1e4)},
+                              {"line", std::move(places)},
+                              {"by", name_in(kWedgeBys, WedgeBy::kMachine)}});
+  }
   return sealed_text(out.dump(1) + "\n");
 }
 

@@ -37,8 +37,8 @@ TEST(WedgeTable, ARowHasAValueForEachColumn) {
   EXPECT_TRUE(is_sealed_text(csv));
   EXPECT_EQ(std::count(row.begin(), row.end(), ','), std::count(head.begin(), head.end(), ','));
   EXPECT_TRUE(row.starts_with("17,reverse,1,3,17,vertical,1.5000,-2.2500,3.0000,"));
-  EXPECT_TRUE(row.ends_with(",0.800,4.0000,2.0000,0.0,4;16,0.900,measured,\n") ||
-              row.ends_with(",0.8000,4.0000,2.0000,0.0,4;16,0.900,measured,\n"));
+  EXPECT_TRUE(row.ends_with(",0.800,4.0000,2.0000,0.0,4;16,0.900,measured,machine,\n") ||
+              row.ends_with(",0.8000,4.0000,2.0000,0.0,4;16,0.900,measured,machine,\n"));
 }
 
 TEST(WedgeTable, JsonSaysTheSame) {
