@@ -380,7 +380,7 @@ soak() {
 
 # Those of sessions are made anew by a test, too, and compared.
 pictures() {
-  deps librsvg2-bin
+  deps ghostscript imagemagick python3-h5py
   build_target --target dubsar
   local dubsar=$build/app/dubsar work=$build/strips
   mkdir -p "$work"
@@ -389,10 +389,7 @@ pictures() {
   "$dubsar" render "$work/tablet.exa" -o docs/tablet.png --partition tablet --style raking --light 315,20 --size 900x900
   "$dubsar" render "$work/tablet.exa" -o docs/msii.png --partition tablet --style msii --size 900x900
   "$dubsar" fatcross "$work/tablet.exa" -o docs/fatcross.png --dpi 240 --no-sides
-  [ -f "$work/wedges.h5" ] || "$dubsar" phantom "$work/wedges.h5" --size 320x192x304 --seed 101 --wedge-depth 7
-  [ -f "$work/wedges.exa" ] || "$dubsar" process "$work/wedges.h5" -o "$work/wedges.exa"
-  "$dubsar" handcopy "$work/wedges.exa" -o "$work/handcopy.svg"
-  rsvg-convert --dpi-x 300 --dpi-y 300 --background-color white -w 700 "$work/handcopy.svg" -o docs/handcopy.png
+  docs/scripts/make_handcopy_pictures.sh "$dubsar" docs ${DUBSAR_S264:+"$DUBSAR_S264"}
   docs/scripts/make_pictures.sh "$dubsar" docs
   docs/scripts/make_contact_pictures.sh "$dubsar" docs
 }

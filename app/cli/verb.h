@@ -11,7 +11,13 @@
 #include "app/cli/overall_progress.h"
 #include "core/base/result.h"
 
+namespace dubsar {
+struct TriMesh;
+}
+
 namespace dubsar::app {
+
+struct Document;
 
 /// Options of every verb.
 struct CommonOptions {
@@ -34,14 +40,18 @@ struct Verb {
   std::function<std::vector<PlannedStage>()> plan = nullptr;  ///< of runs that take minutes; may be empty
 };
 
+/// What people made of a surface, as it was kept when they looked at the file; empty where nobody did. A program
+/// without windows has none.
+using KeptDocument = std::function<Result<Document>(const std::string& file, const TriMesh& mesh)>;
+
 Verb add_animate_verb(Arguments program);
 Verb add_phantom_verb(Arguments program);
 Verb add_process_verb(Arguments program);
 Verb add_info_verb(Arguments program);
 Verb add_compare_verb(Arguments program);
 Verb add_kiosk_verb(Arguments program);
-Verb add_wedges_verb(Arguments program);
-Verb add_handcopy_verb(Arguments program);
+Verb add_wedges_verb(Arguments program, KeptDocument kept = {});
+Verb add_handcopy_verb(Arguments program, KeptDocument kept = {});
 Verb add_seal_verb(Arguments program);
 Verb add_exa_verb(Arguments program);
 Verb add_export_verb(Arguments program);

@@ -76,6 +76,8 @@ std::vector<Command> mark_commands();                                         //
 std::vector<Command> text_commands();                                         ///< lines of text, ATF, the record
 std::vector<Command> section_commands();                                      ///< cuts and fog
 std::vector<Command> slice_commands();                                        ///< slices of the scan
+std::vector<Command> export_commands();                                       ///< what is published
+std::vector<Command> wedge_commands();                                        ///< wedges of an edition
 std::vector<Command> film_commands();
 std::vector<Command> file_commands();    ///< opening surfaces
 std::vector<Command> work_commands();    ///< copies of the work, and work that was found
@@ -83,6 +85,8 @@ std::vector<Command> window_commands();  ///< help, displays, sources, the windo
 
 /// Takes in a line of text between two places, as one step (text_lines.h), and opens it.
 void add_text_line(Editor& editor, const std::vector<SurfacePin>& ends, std::string text);
+/// A wedge in a sentence: its number, kind, depth, where it stands and whose it is.
+std::string wedge_words(const ScriptWedge& wedge);
 /// Says so where a line runs over clay whose surface the scan does not show, and its text tells no damage.
 void warn_of_patch(Editor& editor, const Note& line);
 

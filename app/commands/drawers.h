@@ -9,15 +9,17 @@
 namespace dubsar::app {
 
 /// Name; key; how it stands. It is drawn by void draw_NAME(const PanelContext&).
-#define DUBSAR_DRAWERS(X)     \
-  X(parts, "p", kOfParts)     \
-  X(light, "l", kBoxed)       \
-  X(style, "t", kBoxed)       \
-  X(measures, "m", kBoxed)    \
-  X(notes, "shift+n", kBoxed) \
-  X(cuts, "c", kBoxed)        \
-  X(slices, "shift+s", kWide) \
-  X(film, "shift+k", kBoxed)
+#define DUBSAR_DRAWERS(X)      \
+  X(parts, "p", kOfParts)      \
+  X(light, "l", kBoxed)        \
+  X(style, "t", kBoxed)        \
+  X(measures, "m", kBoxed)     \
+  X(notes, "shift+n", kBoxed)  \
+  X(wedges, "shift+g", kBoxed) \
+  X(cuts, "c", kBoxed)         \
+  X(slices, "shift+s", kWide)  \
+  X(film, "shift+k", kBoxed)   \
+  X(export, "shift+e", kBoxed)
 
 enum class DrawerFrame : std::uint8_t {
   kBoxed,    ///< in a box as high as its contents

@@ -58,6 +58,14 @@ class Workplace {
   virtual Result<void> write_slice(const std::string& path, std::size_t which) = 0;
   /// What is seen as a picture, `factor` times as large as in the window. Says where it is.
   virtual Result<void> picture(const std::string& path, int factor) = 0;
+  /// Begins to look for the wedges of a part (empty: of the tablet); the document has them as one step once they are
+  /// there. kUsage: there is no such part.
+  virtual Result<void> find_wedges(const std::string& part) = 0;
+  virtual bool stop_wedges() = 0;  ///< false: none are being looked for
+  /// Begins to write what is published of the surface (kExportKinds) as the window's choice says; an empty path: beside
+  /// the surface. kUsage: there is no file of it.
+  virtual Result<void> publish(const std::string& kind, const std::string& path) = 0;
+  virtual bool stop_publishing() = 0;  ///< false: nothing is being written
   /// Shows the document's film from its beginning, or stops it; `from_s`: from then on, whether or not it is shown now.
   virtual Result<void> play_film(std::optional<double> from_s) = 0;
 };

@@ -8,6 +8,7 @@
 #include "app/document/document_file.h"
 #include "app/document/mark_file.h"
 #include "core/edition/line_label.h"
+#include "core/script/correction/wedge_edits.h"
 
 namespace dubsar::app {
 namespace {
@@ -181,8 +182,24 @@ Result<void> use_distance(Editor& editor, const std::vector<SurfacePin>& pins) {
 Result<void> use_angle(Editor& editor, const std::vector<SurfacePin>& pins) {
   return add_measure(editor, MeasureKind::kAngle, pins, {});
 }
+/// Of the wedge that is clicked on, at its deepest place; where the wedges of the part are known, what is beside them
+/// is level.
 Result<void> use_depth(Editor& editor, const std::vector<SurfacePin>& pins) {
-  return add_measure(editor, MeasureKind::kDepth, pins, {});
+  const auto& all = editor.document().edition.wedges;
+  const bool known = std::any_of(all.begin(), all.end(), [&](const MarkedWedge& marked) {
+    return !marked.deleted && marked.part == pins[0].part;
+  });
+  if (!known) return add_measure(editor, MeasureKind::kDepth, pins, {});
+  const std::vector<ScriptWedge> wedges = wedges_of(editor.document());
+  const auto at = wedge_at(wedges, pins[0].at_mm);
+  if (!at) {
+    editor.place().say(tr("wedge.level"));
+    return {};
+  }
+  std::vector<SurfacePin> deepest = pins;
+  deepest[0].at_mm = wedges[*at].tip_mm;
+  editor.ui().pointing.wedge = *at + 1;
+  return add_measure(editor, MeasureKind::kDepth, deepest, {});
 }
 Result<void> use_profile(Editor& editor, const std::vector<SurfacePin>& pins) {
   return add_measure(editor, MeasureKind::kProfile, pins, {});

@@ -6,14 +6,17 @@
 namespace dubsar::app {
 
 /// Name, key, places. Result<void> use_NAME(Editor&, const std::vector<SurfacePin>&) does it, in a file of this room.
-#define DUBSAR_TOOLS(X) \
-  X(distance, "d", 2)   \
-  X(angle, "a", 3)      \
-  X(depth, "w", 1)      \
-  X(profile, "f", 2)    \
-  X(note, "n", 1)       \
-  X(line, "i", 2)       \
-  X(slice, "j", 1)
+#define DUBSAR_TOOLS(X)      \
+  X(distance, "d", 2)        \
+  X(angle, "a", 3)           \
+  X(depth, "w", 1)           \
+  X(profile, "f", 2)         \
+  X(note, "n", 1)            \
+  X(line, "i", 2)            \
+  X(slice, "j", 1)           \
+  X(wedge, "shift+w", 1)     \
+  X(wedge_add, "shift+a", 3) \
+  X(wedge_move, "shift+m", 2)
 
 #define DUBSAR_TOOL_USE(name, key, places) Result<void> use_##name(Editor&, const std::vector<SurfacePin>&);
 DUBSAR_TOOLS(DUBSAR_TOOL_USE)

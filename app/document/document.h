@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/document/camera_pose.h"
+#include "app/document/edition_wedges.h"
 #include "app/document/keyframe.h"
 #include "app/document/measure.h"
 #include "core/edition/tablet_record.h"
@@ -86,7 +87,8 @@ struct SourceFile {
 /// What is said of the tablet and its text, besides the lines that are pinned to it.
 struct TabletEdition {
   TabletRecord record;
-  std::string atf{};  ///< the text that was read in, as it is; empty: none
+  std::string atf{};                  ///< the text that was read in, as it is; empty: none
+  std::vector<MarkedWedge> wedges{};  ///< in the order of reading; in files and joined as things of their own
   friend bool operator==(const TabletEdition&, const TabletEdition&) = default;
 };
 

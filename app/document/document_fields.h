@@ -4,10 +4,17 @@
 
 #include "app/document/field_json.h"
 
+namespace dubsar {
+void fields(auto& f, WedgeBefore& v) {
+  f("order", v.order);
+  f("clear", v.clear);
+}
+}  // namespace dubsar
+
 namespace dubsar::app {
 
 /// Of what is written; one more with each field that comes or goes. What older files lack is as in a new document.
-inline constexpr int kDocumentVersion = 6;
+inline constexpr int kDocumentVersion = 7;
 
 void fields(auto& f, SourceFile& v) {
   f("path", v.path);
@@ -88,6 +95,30 @@ void fields(auto& f, TabletEdition& v) {
   f("translated", v.record.translated);
   f("atf", v.atf);
 }
+void fields(auto& f, MarkedWedge& v) {
+  f("by", v.wedge.by);
+  f("deleted", v.deleted);
+  f("kind", v.wedge.kind);
+  f("side", v.wedge.side);
+  f("column", v.wedge.column);
+  f("line", v.wedge.line);
+  f("order", v.wedge.order);
+  f("head_mm", v.wedge.head_mm);
+  f("left_mm", v.wedge.corner_mm[0]);
+  f("right_mm", v.wedge.corner_mm[1]);
+  f("tip_mm", v.wedge.tip_mm);
+  f("tail_mm", v.wedge.tail_mm);
+  f("normal", v.wedge.normal);
+  f("direction", v.wedge.direction);
+  f("depth_mm", v.wedge.depth_mm);
+  f("length_mm", v.wedge.length_mm);
+  f("width_mm", v.wedge.width_mm);
+  f("opening_deg", v.wedge.opening_deg);
+  f("confidence", v.wedge.confidence);
+  f("pressed_after", v.wedge.pressed_after);
+  f("part", v.part);
+  f("id", v.id);
+}
 void fields(auto& f, ScanView& v) {
   f("cursor_mm", v.cursor_mm);
   f("centre_mm", v.centre_mm);
@@ -132,6 +163,7 @@ void fields(auto& f, Document& v) {
   f("measures", v.measures);
   f("notes", v.notes);
   f("edition", v.edition);
+  f("wedges", v.edition.wedges);
   f("scan", v.scan);
   f("keyframes", v.keyframes);
 }

@@ -100,6 +100,7 @@ void give_ids_to(std::vector<Thing>& things) {
 void give_ids(Document& document) {
   give_ids_to(document.notes);
   give_ids_to(document.measures);
+  give_ids_to(document.edition.wedges);
 }
 
 std::string format_work(const Work& work) {

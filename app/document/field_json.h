@@ -54,6 +54,9 @@ class Writer {
   static json write(double value) { return value; }
   static json write(int value) { return value; }
   static json write(MeasureKind value) { return std::string(measure_kind_name(value)); }
+  static json write(WedgeKind value) { return std::string(name_in(kWedgeKinds, value)); }
+  static json write(TextSide value) { return std::string(name_in(kTextSides, value)); }
+  static json write(WedgeBy value) { return std::string(name_in(kWedgeBys, value)); }
   static json write(std::int64_t value) { return value; }
   static json write(std::uint8_t value) { return static_cast<int>(value); }
   static json write(const std::array<std::uint8_t, 3>& v) { return {int{v[0]}, int{v[1]}, int{v[2]}}; }
@@ -132,6 +135,18 @@ class Reader {
     if (!found) return complain(at + " is no kind of measure: distance, angle, depth or profile");
     out = *found;
   }
+  template <class Enum, std::size_t kCount>
+  void name(const json& value, const std::string& at, const EnumName<Enum> (&names)[kCount], Enum& out) const {
+    for (const EnumName<Enum>& each : names)
+      if (value.is_string() && value.get<std::string>() == each.name) {
+        out = each.value;
+        return;
+      }
+    complain(fmt::format("{} is none of its names, {} to {}", at, names[0].name, names[kCount - 1].name));
+  }
+  void read(const json& value, const std::string& at, WedgeKind& out) const { name(value, at, kWedgeKinds, out); }
+  void read(const json& value, const std::string& at, TextSide& out) const { name(value, at, kTextSides, out); }
+  void read(const json& value, const std::string& at, WedgeBy& out) const { name(value, at, kWedgeBys, out); }
   void read(const json& value, const std::string& at, std::int64_t& out) const {
     if (!value.is_number_integer()) return complain(at + " is no whole number");
     out = value.get<std::int64_t>();

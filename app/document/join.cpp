@@ -28,6 +28,14 @@ json json_of(auto value) {
   return writer.take();
 }
 
+/// Where a wedge stands among the others is no part of it: one that goes changes the numbers of all behind it.
+json json_of(MarkedWedge value) {
+  value.wedge.order = 0;
+  stored::Writer writer;
+  fields(writer, value);
+  return writer.take();
+}
+
 /// As it is in files, where places have three digits.
 bool same(const auto& a, const auto& b) { return a == b || json_of(a) == json_of(b); }
 
@@ -70,6 +78,12 @@ std::vector<Thing> join_things(const std::vector<Thing>* base, const std::vector
   return out;
 }
 
+/// What is said of the tablet, without its wedges.
+TabletEdition said_of(TabletEdition edition) {
+  edition.wedges.clear();
+  return edition;
+}
+
 bool same_look(const Keyframe& a, Keyframe b) {
   b.time_s = a.time_s;
   return same(a, b);
@@ -102,7 +116,8 @@ std::vector<Keyframe> join_films(const std::vector<Keyframe>& base, std::vector<
 
 /// What of the document is a list of things, or this window's own.
 bool is_joined_otherwise(const std::string& member) {
-  return member == "notes" || member == "measures" || member == "keyframes" || member == "now" || member == "source";
+  return member == "notes" || member == "measures" || member == "wedges" || member == "keyframes" || member == "now" ||
+         member == "source";
 }
 
 template <class Thing>
@@ -119,7 +134,10 @@ Document join_marks(const Document* base, const Document& mine, const Document& 
   Document out = mine;
   out.notes = join_things(base != nullptr ? &base->notes : nullptr, mine.notes, theirs.notes);
   out.measures = join_things(base != nullptr ? &base->measures : nullptr, mine.measures, theirs.measures);
-  if (base == nullptr && out.edition == TabletEdition{}) out.edition = theirs.edition;
+  if (base == nullptr && said_of(out.edition) == TabletEdition{}) out.edition = theirs.edition;
+  out.edition.wedges =
+      join_things(base != nullptr ? &base->edition.wedges : nullptr, mine.edition.wedges, theirs.edition.wedges);
+  number_wedges(out);
   out.keyframes =
       join_films(base != nullptr ? base->keyframes : std::vector<Keyframe>(), mine.keyframes, theirs.keyframes);
   return out;
@@ -141,6 +159,7 @@ Document join(const Document* base, const Document& mine, const Document& theirs
   const Document marks = join_marks(base, mine, theirs);
   out.notes = marks.notes;
   out.measures = marks.measures;
+  out.edition.wedges = marks.edition.wedges;
   out.keyframes = marks.keyframes;
   return out;
 }
@@ -156,7 +175,9 @@ std::string marks_more(const Document& before, const Document& after) {
   if (notes > 0) add(tr("marks.notes", notes));
   if (measures > 0) add(tr("marks.measures", measures));
   if (keyframes > 0) add(tr("marks.keyframes", keyframes));
-  if (before.edition == TabletEdition{} && after.edition != TabletEdition{}) add(tr("marks.edition"));
+  if (const std::size_t wedges = more(before.edition.wedges, after.edition.wedges); wedges > 0)
+    add(tr("marks.wedges", wedges));
+  if (said_of(before.edition) == TabletEdition{} && said_of(after.edition) != TabletEdition{}) add(tr("marks.edition"));
   return out;
 }
 

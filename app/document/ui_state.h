@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/document/document.h"
+#include "app/document/export_choice.h"
 
 namespace dubsar::app {
 
@@ -31,14 +32,17 @@ struct Pointing {
   bool cursor = false;             ///< a ring on the surface
   bool cut_box = false;            ///< the box of cuts, with a handle for each side
   std::size_t notes = 0;           ///< that clicks have placed: each time what is typed next is its text
+  std::size_t wedge = 0;           ///< which is chosen, by its number; 0: none
+  bool wedges = true;              ///< they are drawn on the surface
   std::optional<glm::dvec2> at{};  ///< heights of the window from its middle, x to the right, y up; none: not seen
   friend bool operator==(const Pointing&, const Pointing&) = default;
 };
 
-/// The dialogue that opens files.
+/// The dialogue that opens files, and how others are written.
 struct Choosing {
   bool open = false;
   std::string folder{};  ///< that is looked into; empty: the one of the present file
+  ExportChoice publishing{};
   friend bool operator==(const Choosing&, const Choosing&) = default;
 };
 

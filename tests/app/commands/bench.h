@@ -72,12 +72,23 @@ class FakePlace final : public Workplace {
     pictures.push_back(fmt::format("{} x{}", path, factor));
     return {};
   }
+  Result<void> find_wedges(const std::string& part) override {
+    if (part == "lid") return fail(ErrorKind::kUsage, "find_wedges: there is no part lid");
+    sought.push_back(part);
+    return {};
+  }
+  Result<void> publish(const std::string& kind, const std::string& path) override {
+    published.push_back(kind + " " + path);
+    return {};
+  }
+  bool stop_publishing() override { return !std::exchange(published, {}).empty(); }
+  bool stop_wedges() override { return !std::exchange(sought, {}).empty(); }
   Result<void> play_film(std::optional<double> from_s) override {
     ++plays;
     played_from_s = from_s;
     return {};
   }
-  std::vector<std::string> pictures;
+  std::vector<std::string> pictures, sought, published;
   int plays = 0;
   std::optional<double> played_from_s;
   int display = 0, retries = 0, recentred = 0;
@@ -148,7 +159,15 @@ inline std::vector<std::string> ways_to_say(const CommandTable& commands) {
                                       "open_work /nowhere/work.json",
                                       "slice_at 1,2,3",
                                       "slice_centre 3,2,1",
-                                      "write_slice /nowhere/slice.png z"};
+                                      "write_slice /nowhere/slice.png z",
+                                      "add_wedge 1,0,5 1,2,5 5,1,5",
+                                      "wedge 1",
+                                      "move_wedge 1 2,1,5 7,1,5",
+                                      "wedge_kind 1 vertical",
+                                      "wedge_line 1 4",
+                                      "wedge_order 1 1",
+                                      "write_wedges /nowhere/wedges.csv",
+                                      "delete_wedge 1"};
   std::vector<std::string> out;
   for (const Command& command : commands.all()) {
     const std::size_t before = out.size();

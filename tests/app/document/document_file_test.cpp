@@ -44,6 +44,24 @@ Document rich(unsigned seed) {
                 "2026-11-27"}};
   out.edition = {{"AO 8295", "P999001", "title", "Louvre", "CC BY", "A. Scribe", "akk-Latn", "en"},
                  "&P999001 = A\r\n1. \u0161u\n"};
+  ScriptWedge wedge;
+  wedge.by = WedgeBy::kCorrected;
+  wedge.kind = WedgeKind::kObliqueUp;
+  wedge.side = TextSide::kLeftEdge;
+  wedge.column = 2;
+  wedge.line = 7;
+  wedge.order = 1;
+  wedge.head_mm = vector();
+  for (glm::dvec3& corner : wedge.corner_mm) corner = vector();
+  wedge.tip_mm = vector();
+  wedge.tail_mm = vector();
+  wedge.depth_mm = 0.75;
+  wedge.length_mm = 4.5;
+  wedge.width_mm = 1.25;
+  wedge.opening_deg = 91.5;
+  wedge.confidence = 0.5;
+  wedge.pressed_after = {{4, 0.125}};
+  out.edition.wedges = {{wedge, "tablet", false, "w1"}, {ScriptWedge{}, "envelope", true, "w2"}};
   out.scan = {vector(), vector(), {0, 1, 0}, {0.6, 0, 0.8}, 2.5, real(), real(), 4};
   out.keyframes = {{1.5, camera(), {3, 4}, 0.5, "phong", {{"tablet", 0.5, vector()}}}, {}};
   return out;
@@ -136,10 +154,10 @@ TEST(DocumentFile, RangesAndOtherVersionsAreRefusedByName) {
   EXPECT_NE(refusal([](Document& d) { d.now.rotation = {0, 0, 0, 0}; }).find("now.rotation_wxyz"), std::string::npos);
   EXPECT_NE(refusal([](Document& d) { d.notes[0].at_mm.x = 1e13; }).find("notes[0].at_mm"), std::string::npos);
   std::string text = format_document(rich(7));
-  text.replace(text.find("\"version\": 6"), 12, "\"version\": 7");
+  text.replace(text.find("\"version\": 7"), 12, "\"version\": 8");
   const auto newer = parse_document(text, "k.json");
   ASSERT_FALSE(newer);
-  EXPECT_EQ(newer.error().message, "k.json: version 7 found, expected 1 to 6; a newer dubsar may have written it");
+  EXPECT_EQ(newer.error().message, "k.json: version 8 found, expected 1 to 7; a newer dubsar may have written it");
   EXPECT_FALSE(parse_document("[]", "k.json"));
 }
 
