@@ -121,8 +121,6 @@ Result<void> Renderer::draw_items(const SceneView& scene, const PassViews& targe
       DUBSAR_TRY(meshes_.draw(*mesh, scene, target, {.shadows = shadows, .pieces = pieces}));
   const auto flat = [&]() -> Result<void> {
     for (const DrawItem& item : scene.items)
-      if (const auto* slice = std::get_if<SliceItem>(&item)) DUBSAR_TRY(flat_.draw(*slice, scene, target));
-    for (const DrawItem& item : scene.items)
       if (const auto* lines = std::get_if<LinesItem>(&item)) DUBSAR_TRY(flat_.draw(*lines, target, pixel));
     return {};
   };

@@ -7,7 +7,6 @@
 #include <glm/vec4.hpp>
 #include <limits>
 
-#include "display/render/images/slice_image.h"
 #include "display/render/mesh/lod_mesh.h"
 
 namespace dubsar {
@@ -36,12 +35,6 @@ void grow_by(Box& box, const MeshItem& item) {
   }
 }
 
-void grow_by(Box& box, const SliceItem& item) {
-  for (const glm::dvec3& p : {item.corner_mm, item.corner_mm + item.across_mm, item.corner_mm + item.along_mm,
-                              item.corner_mm + item.across_mm + item.along_mm})
-    grow(box, p);
-}
-
 void grow_by(Box& box, const LinesItem& item) {
   for (const glm::dvec3& p : item.points_mm) grow(box, p);
 }
@@ -68,15 +61,6 @@ Result<void> check_item(const MeshItem& item) {
     if (!finite(part.offset_mm) || !fraction(part.opacity))
       return fail(ErrorKind::kUsage, "scene: a part with opacity {} or an offset that is not finite, expected 0 to 1",
                   part.opacity);
-  return {};
-}
-
-Result<void> check_item(const SliceItem& item) {
-  if (item.image == nullptr) return fail(ErrorKind::kUsage, "scene: a slice item has no image");
-  if (!finite(item.corner_mm) || !finite(item.across_mm) || !finite(item.along_mm) || !std::isfinite(item.black) ||
-      !std::isfinite(item.white) || !fraction(item.opacity))
-    return fail(ErrorKind::kUsage, "scene: a slice has numbers that are not finite, or opacity {}, expected 0 to 1",
-                item.opacity);
   return {};
 }
 

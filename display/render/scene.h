@@ -17,9 +17,8 @@
 
 namespace dubsar {
 
-class LodMesh;     // display/render/mesh/lod_mesh.h
-class SliceImage;  // display/render/images/slice_image.h
-class LabelFont;   // display/render/images/label_font.h
+class LodMesh;    // display/render/mesh/lod_mesh.h
+class LabelFont;  // display/render/images/label_font.h
 
 /// A surface in graphics memory. Outlives the pictures of it.
 struct MeshItem {
@@ -28,16 +27,6 @@ struct MeshItem {
   Style style;
   PartLooks parts{};
   OtherLook other{};
-};
-
-/// A cut through the scan: a rectangle in the world with grey values on it.
-struct SliceItem {
-  const SliceImage* image = nullptr;
-  glm::dvec3 corner_mm{0.0};        ///< outer corner of the first voxel of the first row
-  glm::dvec3 across_mm{1, 0, 0};    ///< along the first row, from its first voxel's outer side to its last one's
-  glm::dvec3 along_mm{0, 1, 0};     ///< from the first row's outer side to the last one's
-  double black = 0.0, white = 1.0;  ///< values that are shown black and white; white may be the smaller one
-  double opacity = 1.0;             ///< 0..1
 };
 
 /// Lines of constant width: measures, scale bars, pointers, boxes.
@@ -74,7 +63,7 @@ struct LabelItem {
   bool operator==(const LabelItem&) const = default;
 };
 
-using DrawItem = std::variant<MeshItem, SliceItem, LinesItem, LabelItem>;
+using DrawItem = std::variant<MeshItem, LinesItem, LabelItem>;
 
 /// Warm light on surfaces around a line through a place towards the eye, such as where a hand would take hold: it lies
 /// on what is seen there, in its depth.
@@ -89,8 +78,7 @@ struct Glow {
 struct SceneView {
   std::span<const DrawItem> items;
   Light light;
-  std::span<const ClipPlane>
-      clips;  ///< in the world; they cut meshes and slices, not lines and labels. At most kMostClipPlanes
+  std::span<const ClipPlane> clips;  ///< in the world; they cut meshes, not lines and labels. At most kMostClipPlanes
   Background background;
   Fog fog{};
   Glow glow{};
@@ -133,7 +121,7 @@ bool casts_shadows(const SceneView& scene);
 Box scene_box_mm(const SceneView& scene);
 
 /// kUsage for what cannot be drawn: numbers that are not finite, opacities beyond 0..1, an odd number of line points,
-/// missing meshes or images, too many planes.
+/// missing meshes, too many planes.
 Result<void> check_scene(const SceneView& scene);
 
 }  // namespace dubsar

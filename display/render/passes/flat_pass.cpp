@@ -4,7 +4,6 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
-#include "display/render/images/slice_image.h"
 #include "display/render/passes/flat_views.h"
 #include "display/render/passes/views_binding.h"
 
@@ -25,19 +24,12 @@ void set_color(GLint location, const Rgb8& color, double opacity) {
   glUniform4f(location, c.x, c.y, c.z, c.w);
 }
 
-void set_vector(GLint location, const glm::dvec3& v) {
-  const glm::vec3 f(v);
-  glUniform3f(location, f.x, f.y, f.z);
-}
-
 }  // namespace
 
 Result<FlatPass> FlatPass::create(bool layered) {
   FlatPass out;
-  DUBSAR_ASSIGN(out.slice_, make_program("slice.vert", "slice.frag"));
   DUBSAR_ASSIGN(out.lines_, make_program("lines.vert", "lines.frag"));
   if (layered) {
-    DUBSAR_ASSIGN(out.slice_layered_, make_program("slice.vert", "slice.frag", kFlatLayered));
     DUBSAR_ASSIGN(out.lines_layered_, make_program("lines.vert", "lines.frag", kFlatLayered));
   }
   out.no_vertices_ = make_vertex_array();
@@ -51,29 +43,6 @@ void FlatPass::bind_views(const PassViews& target) {
   stream(views_, std::as_bytes(std::span(data)));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kViewsBinding, views_);
   glBindVertexArray(no_vertices_);
-}
-
-Result<void> FlatPass::draw(const SliceItem& item, const SceneView& scene, const PassViews& target) {
-  glUseProgram(target.layers.empty() ? slice_ : slice_layered_);
-  bind_views(target);
-  set_vector(0, item.corner_mm);
-  set_vector(1, item.across_mm);
-  set_vector(2, item.along_mm);
-  glUniform3f(3, static_cast<float>(item.black), static_cast<float>(item.white), static_cast<float>(item.opacity));
-  glUniform1i(4, static_cast<GLint>(scene.clips.size()));
-  for (std::size_t i = 0; i < scene.clips.size(); ++i) {
-    const ClipPlane& clip = scene.clips[i];
-    glUniform4f(5 + static_cast<GLint>(i), static_cast<float>(clip.normal.x), static_cast<float>(clip.normal.y),
-                static_cast<float>(clip.normal.z), static_cast<float>(-glm::dot(clip.normal, clip.point_mm)));
-  }
-  glBindTextureUnit(0, item.image->texture());
-  blend();
-  glDepthFunc(GL_LESS);
-  glDepthMask(item.opacity == 1.0 ? GL_TRUE : GL_FALSE);
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(target.views.size()));
-  glDepthMask(GL_TRUE);
-  glDisable(GL_BLEND);
-  return check_gl("drawing a slice");
 }
 
 Result<void> FlatPass::draw(const LinesItem& item, const PassViews& target, double pixel) {

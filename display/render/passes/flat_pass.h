@@ -1,5 +1,5 @@
 #pragma once
-// The part of the renderer that draws what has no thickness: slices of the scan and lines.
+// The part of the renderer that draws what has no thickness: lines.
 
 #include <span>
 
@@ -15,14 +15,13 @@ class FlatPass {
   /// `layered` as MeshPass::layered().
   static Result<FlatPass> create(bool layered);
 
-  Result<void> draw(const SliceItem& item, const SceneView& scene, const PassViews& target);
   /// `pixel` is how many samples of the target a pixel of the picture has on a side.
   Result<void> draw(const LinesItem& item, const PassViews& target, double pixel);
 
  private:
   void bind_views(const PassViews& target);
 
-  GlProgram slice_, slice_layered_, lines_, lines_layered_;
+  GlProgram lines_, lines_layered_;
   GlVertexArray no_vertices_;
   GlBuffer views_, points_;
 };

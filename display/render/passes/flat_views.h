@@ -1,5 +1,5 @@
 #pragma once
-// Views as the shaders of flat things read them: slices, lines and labels (std430).
+// Views as the shaders of flat things read them: lines and labels (std430).
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>

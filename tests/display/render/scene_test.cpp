@@ -1,4 +1,4 @@
-// Scenes of several items against geometry: where lines, slices, cuts and parts stand in the picture.
+// Scenes of several items against geometry: where lines, cuts and parts stand in the picture.
 
 #include "display/render/scene.h"
 
@@ -9,7 +9,6 @@
 
 #include "display/optics/srgb.h"
 #include "display/render/context/context_egl.h"
-#include "display/render/images/slice_image.h"
 #include "display/render/mesh/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "tests/display/test_meshes.h"
@@ -109,40 +108,18 @@ TEST_F(Scene, AMeshIsTurnedScaledAndMovedAsItsItemSays) {
   EXPECT_EQ(at(image, 20.5, 9.5), kBlack);
 }
 
-TEST_F(Scene, PlanesCutMeshesAndSlicesButNotLines) {
+TEST_F(Scene, PlanesCutMeshesButNotLines) {
   const LodMesh mesh = two_plates();
-  const std::array<float, 1> white{1.0f};
-  const SliceImage image = SliceImage::upload(1, 1, white).value();
   LinesItem line;
   line.points_mm = {{-40, 30, 0}, {40, 30, 0}};
-  const std::array<DrawItem, 3> items{plate(mesh),
-                                      SliceItem{&image, {-40, -40, 5}, {80, 0, 0}, {0, 15, 0}, 0.0, 1.0, 1.0}, line};
+  const std::array<DrawItem, 2> items{plate(mesh), line};
   const std::array<ClipPlane, 2> clips{ClipPlane{{5, 0, 0}, {-1, 0, 0}}, ClipPlane{{0, 0, 8}, {0, 0, -1}}};
   const Image cut = picture(items, clips);
   EXPECT_EQ(at(cut, 0.5, 0.5), kRed) << "part 1 lies before the second plane";
   EXPECT_EQ(at(cut, 4.5, 15.5), kRed);
   EXPECT_EQ(at(cut, 5.5, 15.5), kBlack);
-  EXPECT_EQ(at(cut, -30.5, -30.5), kWhite);
-  EXPECT_EQ(at(cut, 5.5, -30.5), kBlack);
   EXPECT_EQ(at(cut, 30.5, 30.5), kWhite);
   EXPECT_EQ(at(picture(items), 5.5, 15.5), kRed) << "without planes nothing is cut";
-}
-
-TEST_F(Scene, SlicesShowTheirValuesBetweenBlackAndWhite) {
-  const std::array<float, 4> values{100, 200, 300, 400};  // first row: 100, 200
-  const SliceImage image = SliceImage::upload(2, 2, values).value();
-  SliceItem slice{&image, {-20, -20, 0}, {40, 0, 0}, {0, 40, 0}, 100.0, 500.0, 1.0};
-  const DrawItem item = slice;
-  const Image grey = picture(std::span(&item, 1));
-  const auto expected = [](double value) { return (value - 100.0) / 400.0 * 255.0; };
-  EXPECT_NEAR(at(grey, -19.5, -19.5)[0], expected(100), 1);
-  EXPECT_NEAR(at(grey, 19.5, -19.5)[0], expected(200), 1);
-  EXPECT_NEAR(at(grey, -19.5, 19.5)[0], expected(300), 1);
-  EXPECT_NEAR(at(grey, 19.5, 19.5)[0], expected(400), 1);
-  EXPECT_NEAR(at(grey, 0, 0)[0], expected(250), 4) << "between voxels it is interpolated";
-  std::swap(slice.black, slice.white);
-  const DrawItem inverse = slice;
-  EXPECT_NEAR(at(picture(std::span(&inverse, 1)), -19.5, -19.5)[0], 255, 1);
 }
 
 TEST_F(Scene, LinesHaveTheirWidthAndHideBehindSurfaces) {
@@ -194,7 +171,6 @@ TEST_F(Scene, WhatCannotBeDrawnIsRefused) {
     return !checked && checked.error().kind == ErrorKind::kUsage;
   };
   EXPECT_TRUE(refused(MeshItem{}));
-  EXPECT_TRUE(refused(SliceItem{}));
   LinesItem line;
   line.points_mm = {{0, 0, 0}};
   EXPECT_TRUE(refused(line));
@@ -206,8 +182,6 @@ TEST_F(Scene, WhatCannotBeDrawnIsRefused) {
   EXPECT_TRUE(refused(line));
   const std::vector<ClipPlane> planes(9);
   EXPECT_FALSE(check_scene({{}, {}, planes, {}}));
-  const std::array<float, 3> values{};
-  EXPECT_FALSE(SliceImage::upload(2, 2, values));
 }
 
 }  // namespace
