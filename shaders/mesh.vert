@@ -59,6 +59,7 @@ vec3 decode_octahedral(vec2 e) {
 vec3 table_color(sampler2D table, Look look) {
   int ao = int((packed_attributes >> 7) & 63u);
   if (look.field.x == 0.0) return texelFetch(table, ivec2(packed_attributes & 127u, ao), 0).rgb;
+  if (not_compared(int(look.field.x), carried)) return vec3(0.2158605);  // 128 of sRGB, as difference_color()
   float at = 127.0 * clamp(field_figure(int(look.field.x), carried) * look.field.y + look.field.z, 0.0, 1.0);
   int low = int(at);
   return mix(texelFetch(table, ivec2(low, ao), 0).rgb, texelFetch(table, ivec2(min(low + 1, 127), ao), 0).rgb,

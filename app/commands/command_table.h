@@ -79,9 +79,10 @@ std::vector<Command> slice_commands();                                        //
 std::vector<Command> export_commands();                                       ///< what is published
 std::vector<Command> wedge_commands();                                        ///< wedges of an edition
 std::vector<Command> film_commands();
-std::vector<Command> file_commands();    ///< opening surfaces
-std::vector<Command> work_commands();    ///< copies of the work, and work that was found
-std::vector<Command> window_commands();  ///< help, displays, sources, the window
+std::vector<Command> file_commands();       ///< opening surfaces
+std::vector<Command> companion_commands();  ///< another surface beside this one
+std::vector<Command> work_commands();       ///< copies of the work, and work that was found
+std::vector<Command> window_commands();     ///< help, displays, sources, the window
 
 /// Takes in a line of text between two places, as one step (text_lines.h), and opens it.
 void add_text_line(Editor& editor, const std::vector<SurfacePin>& ends, std::string text);

@@ -19,7 +19,8 @@ namespace dubsar::app {
   X(cuts, "c", kBoxed)         \
   X(slices, "shift+s", kWide)  \
   X(film, "shift+k", kBoxed)   \
-  X(export, "shift+e", kBoxed)
+  X(export, "shift+e", kBoxed) \
+  X(files, "shift+f", kBoxed)
 
 enum class DrawerFrame : std::uint8_t {
   kBoxed,    ///< in a box as high as its contents

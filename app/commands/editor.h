@@ -30,6 +30,7 @@ class Workplace {
   virtual Result<void> open_file(const std::string& path) = 0;
   virtual Result<void> open_recent(std::size_t number) = 0;  ///< counted from 1
   virtual Result<void> switch_file(int step) = 0;            ///< of those that are open; kUsage: there is no other
+  virtual std::string next_file() const = 0;                 ///< of those that are open; empty: there is no other
   virtual bool stop_opening() = 0;                           ///< false: none is being read
   virtual std::string present_folder() const = 0;            ///< where the open dialogue begins
   virtual std::string today() const = 0;                     ///< as 2026-11-27, UTC

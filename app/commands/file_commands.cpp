@@ -20,7 +20,7 @@ Command open() {
   out.run = [](Editor& editor, const std::string& file) -> Result<void> {
     Choosing& choosing = editor.ui().choosing;
     if (file.empty()) {
-      choosing.open = !choosing.open;
+      choosing = {!choosing.open, false, choosing.folder};
       return {};
     }
     DUBSAR_TRY(editor.place().open_file(file));

@@ -84,6 +84,16 @@ struct SourceFile {
   friend bool operator==(const SourceFile&, const SourceFile&) = default;
 };
 
+/// Another surface that stands beside this one, turned with it in the same light.
+struct Companion {
+  std::string path;            ///< of its file; empty: there is none
+  std::string content;         ///< file_checksum() of that
+  double difference_mm = 0.0;  ///< from which difference on colours are full; 0: colours tell no difference
+  friend bool operator==(const Companion&, const Companion&) = default;
+};
+/// What is farther apart is not told (display/render/mesh/surface_field.h).
+inline constexpr double kMostDifferenceMm = 1.9;
+
 /// What is said of the tablet and its text, besides the lines that are pinned to it.
 struct TabletEdition {
   TabletRecord record;
@@ -99,6 +109,7 @@ struct Document {
   CameraPose home, now;  ///< home is the obverse, upright
   LightPlace home_light, light;
   StyleChoice style;
+  Companion companion;
   std::vector<Cut> clips;
   double fog = 0.0;  ///< 0..1: how much the far side fades
   std::vector<Measure> measures;

@@ -51,6 +51,11 @@ void fields(auto& f, StyleChoice& v) {
   f("back_faces", v.back_faces);
   f("section", v.section);
 }
+void fields(auto& f, Companion& v) {
+  f("path", v.path);
+  f("content", v.content);
+  f("difference_mm", v.difference_mm);
+}
 void fields(auto& f, Cut& v) {
   f("normal", v.normal);
   f("distance_mm", v.distance_mm);
@@ -158,6 +163,7 @@ void fields(auto& f, Document& v) {
   f("home_light", v.home_light);
   f("light", v.light);
   f("style", v.style);
+  f("companion", v.companion);
   f("clips", v.clips);
   f("fog", v.fog);
   f("measures", v.measures);

@@ -30,6 +30,8 @@ std::string complaint_about(const Document& d) {
     return fmt::format("style.share is {}, expected 0 to 1", d.style.share);
   if (!(d.style.radiance >= 0 && d.style.radiance <= 2))
     return fmt::format("style.radiance is {}, expected 0 to 2", d.style.radiance);
+  if (!(d.companion.difference_mm >= 0 && d.companion.difference_mm <= kMostDifferenceMm))
+    return fmt::format("companion.difference_mm is {}, expected 0 to {}", d.companion.difference_mm, kMostDifferenceMm);
   for (const Part& part : d.parts)
     if (!(part.opacity >= 0 && part.opacity <= 1))
       return fmt::format("opacity of {} is {}, expected 0 to 1", part.name, part.opacity);

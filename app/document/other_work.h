@@ -3,6 +3,7 @@
 // that had its name.
 
 #include <string>
+#include <vector>
 
 #include "app/document/document_file.h"
 
@@ -10,8 +11,9 @@ namespace dubsar::app {
 
 struct OtherWork {
   Work work;
-  std::string file;        ///< where it lies
-  bool same_scan = false;  ///< places in mm of the scan are the same places; else nobody knows
+  std::string file;                   ///< where it lies
+  bool same_scan = false;             ///< places in mm of the scan are the same places; else nobody knows
+  std::vector<std::string> copies{};  ///< files of the same work, or of what it was before
   friend bool operator==(const OtherWork&, const OtherWork&) = default;
 };
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/panels/panel_kit.h"
 #include "display/render/images/legend_image.h"
 #include "display/render/mesh/surface_field.h"
@@ -13,17 +15,23 @@ constexpr float kBarEm = 15.0f, kTall = 12.0f, kPad = 10.0f;
 
 }  // namespace
 
-std::optional<LegendPicture> legend_of(const Style& style) {
+std::optional<LegendPicture> legend_of(const Style& style, const SurfaceDifference* difference) {
   if (!is_field(style.map)) return std::nullopt;
   const FieldScale scale = field_scale(style);
-  return LegendPicture{tr_name("legend", scale.name), std::string(scale.unit), scale.from, scale.to,
-                       field_colors(style)};
+  LegendPicture out{tr_name("legend", scale.name), std::string(scale.unit), scale.from, scale.to, field_colors(style)};
+  if (difference != nullptr) {
+    const auto mm = [](double value) { return local_figures(fmt::format("{:.3f}", value)); };
+    out.figures = tr("legend.apart", mm(difference->median_mm), mm(difference->most_mm));
+  }
+  return out;
 }
 
 void draw_legend(const LegendPicture& legend, float left, float bottom) {
   const float line = ImGui::GetTextLineHeight(), bar = kBarEm * ImGui::GetFontSize(),
-              aside = 1.5f * ImGui::GetFontSize(), width = bar + 2 * kPad + 2 * aside,
-              height = 2 * line + kTall + 2 * kPad + 6.0f;
+              aside = 1.5f * ImGui::GetFontSize(),
+              words = legend.figures.empty() ? 0.0f : ImGui::CalcTextSize(legend.figures.c_str()).x + aside,
+              width = std::max(bar + 2 * aside, words) + 2 * kPad,
+              height = (legend.figures.empty() ? 2 : 3) * line + kTall + 2 * kPad + 6.0f;
   ImGui::SetNextWindowPos(ImVec2(left, bottom - height));
   ImGui::SetNextWindowSize(ImVec2(width, height));
   ImGui::SetNextWindowBgAlpha(0.8f);
@@ -46,6 +54,7 @@ void draw_legend(const LegendPicture& legend, float left, float bottom) {
     list.AddLine(ImVec2(x, top + kTall), ImVec2(x, top + kTall + 4.0f), kText);
     list.AddText(ImVec2(x - 0.5f * ImGui::CalcTextSize(number.c_str()).x, top + kTall + 4.0f), kText, number.c_str());
   }
+  if (!legend.figures.empty()) list.AddText(ImVec2(corner.x, top + kTall + 4.0f + line), kText, legend.figures.c_str());
   ImGui::End();
 }
 

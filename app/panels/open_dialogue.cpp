@@ -81,12 +81,13 @@ std::string duration_words(double seconds) {
 
 std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view typed) {
   std::vector<DialogueRow> out;
+  const std::string_view open = files.beside ? "set_beside" : "open";
   const std::string wanted = lower_text(typed);
   const auto fits = [&](const std::string& name) { return lower_text(name).find(wanted) != std::string::npos; };
   if (typed.find('/') != std::string_view::npos || typed == "..") {
     const bool surface = names_a_surface(fs::path(typed));
     out.push_back({std::string(typed), surface ? tr("files.open") : tr("files.folder"),
-                   fmt::format("{} {}", surface ? "open" : "open_folder", typed), false, !surface});
+                   fmt::format("{} {}", surface ? open : "open_folder", typed), false, !surface});
     return out;
   }
   std::vector<DialogueRow> recent;
@@ -95,7 +96,9 @@ std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view
     const fs::path path(file.path);
     if (!fits(path.filename().string())) continue;
     recent.push_back({path.filename().string(), file.there ? path.parent_path().string() : tr("files.gone"),
-                      file.there ? fmt::format("open_recent {}", i + 1) : std::string()});
+                      !file.there    ? std::string()
+                      : files.beside ? fmt::format("{} {}", open, file.path)
+                                     : fmt::format("open_recent {}", i + 1)});
   }
   if (!recent.empty()) out.push_back({tr("files.last"), {}, {}, true});
   out.insert(out.end(), recent.begin(), recent.end());
@@ -110,7 +113,7 @@ std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view
     any = true;
     const std::string path = (fs::path(listing.folder) / entry.name).string();
     out.push_back({entry.folder ? entry.name + "/" : entry.name, entry.folder ? "" : size_words(entry.bytes),
-                   fmt::format("{} {}", entry.folder ? "open_folder" : "open", path), false, entry.folder});
+                   fmt::format("{} {}", entry.folder ? "open_folder" : open, path), false, entry.folder});
   }
   if (!any && listing.problem.empty())
     out.push_back({typed.empty() ? tr("files.none") : tr("files.no_name"), {}, {}, true});
@@ -145,7 +148,7 @@ void draw_open_dialogue(bool open, const FilesState& files, float width, float h
   ImGui::SetNextWindowSize(
       ImVec2(std::min(kDialogueWidth, width - 24.0f), std::min(kHeight, height - kTopLine - kStrip - 16.0f)));
   ImGui::Begin("open", nullptr, (kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus));
-  ImGui::TextColored(ImColor(kAccent), "%s", tr("files.title").c_str());
+  ImGui::TextColored(ImColor(kAccent), "%s", (files.beside ? tr("files.beside") : tr("files.title")).c_str());
   next_in_row(ImGui::CalcTextSize(tr("files.kinds").c_str()).x);
   say_fitted(kDim, tr("files.kinds"), ImGui::GetContentRegionAvail().x);
   ImGui::SetNextItemWidth(-1.0f);

@@ -22,6 +22,7 @@ struct RecentFile {
 /// What panels know of files.
 struct FilesState {
   bool has_surface = true;           ///< something is shown
+  bool beside = false;               ///< what is chosen stands beside it
   std::vector<std::string> names{};  ///< of the open files, without their folders
   std::size_t shown = 0;             ///< of them
   std::optional<Opening> opening{};

@@ -26,7 +26,8 @@ constexpr double kLeastHeight = 540.0;        // of the layout; smaller views sh
 constexpr double kLeastScaledHeight = 400.0;  // what panels need where somebody wants them larger
 constexpr double kMostHeight = 900.0;         // larger ones larger
 constexpr float kMargin = 12.0f;
-constexpr float kLeastScaled = 1.0f;                        // letters of the help, where somebody said how large
+constexpr float kLeastScaled = 1.0f;  // letters of the help, where somebody said how large
+constexpr float kCaptionRoom = 64.0f;
 constexpr float kLegendLeft = 8.0f, kLegendBeside = 96.0f;  // below the tools; beside them where they reach so far down
 constexpr float kToolsEnd = 270.0f, kLegendTall = 80.0f;
 constexpr float kBallAside = 372.0f;  // beside the drawers
@@ -135,7 +136,8 @@ void Overlay::draw_in_panel_letters(const std::function<void()>& draw) const {
 void Overlay::draw_all(float width, float height) {
   const bool around = text_.panels && text_.panels->ui.panels;
   const auto legend = [&] {
-    const float bottom = height - (around ? 120.0f : 24.0f);
+    const bool captions = !text_.legend->figures.empty();  // names stand below two surfaces
+    const float bottom = height - (around ? 120.0f : captions ? kCaptionRoom : 24.0f);
     draw_legend(*text_.legend, around && bottom - kLegendTall < kToolsEnd ? kLegendBeside : kLegendLeft, bottom);
   };
   if (text_.help.empty()) {

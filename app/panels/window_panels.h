@@ -22,6 +22,14 @@ struct PanelLine {
   friend bool operator==(const PanelLine&, const PanelLine&) = default;
 };
 
+/// Work that was found and is not that of the surface (app/document/other_work.h).
+struct OtherWorkRow {
+  std::string day{}, name{};  ///< when it was set aside, as 2026-11-27 (empty: it was not); of the surface's file
+  std::string marks{};        ///< what is in it: "2 notes, 1 measure"
+  bool taken = false;         ///< all of it is here already
+  friend bool operator==(const OtherWorkRow&, const OtherWorkRow&) = default;
+};
+
 /// All that panels show, as values.
 struct PanelState {
   PanelLine line{};
@@ -32,6 +40,7 @@ struct PanelState {
   FilesState files{};
   std::optional<JobState> exporting{};      ///< what is being written
   std::optional<JobState> finding{};        ///< wedges that are being looked for
+  std::vector<OtherWorkRow> others{};       ///< while their drawer is open
   bool playing = false;                     ///< the document's film
   std::vector<std::uint32_t> thumbnails{};  ///< names of textures, one for each keyframe; 0: not made yet
   double thumbnail_aspect = 1.6;            ///< their width by their height

@@ -79,9 +79,10 @@ FileSession::FileSession(SourceFile source, const fs::path& state_folder)
   const Document mine = found_.value_or(Document());
   for (OtherWork& other : others) {
     const bool known = any_ && saves_.contains(other.work.saves);
-    const bool again = std::any_of(others_.begin(), others_.end(),
+    const auto same = std::find_if(others_.begin(), others_.end(),
                                    [&](const OtherWork& each) { return each.work.saves.contains(other.work.saves); });
-    if (!known && !again && !marks_more(mine, add_marks(mine, other.work.document)).empty())
+    if (same != others_.end()) same->copies.push_back(other.file);
+    if (!known && same == others_.end() && !marks_more(mine, add_marks(mine, other.work.document)).empty())
       others_.push_back(std::move(other));
   }
 }

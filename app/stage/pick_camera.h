@@ -12,6 +12,20 @@
 
 namespace dubsar::app {
 
+/// Whether a place of the window (heights from its middle) is where another state or another surface is shown.
+inline bool other_half(const Shown& shown, const glm::dvec2& window_mm, const glm::dvec2& at) {
+  if (!shown.compared) return false;
+  const bool first = window_mm.y > window_mm.x ? at.y > 0.0 : at.x < 0.0;
+  return first == !shown.compared->surface;
+}
+
+/// From the window's middle to that of the half that a place lies in, in heights of the window; 0 where there are none.
+inline glm::dvec2 half_offset(const Shown& shown, const glm::dvec2& window_mm, const glm::dvec2& at) {
+  if (!shown.compared) return {0.0, 0.0};
+  if (window_mm.y > window_mm.x) return {0.0, at.y > 0.0 ? 0.25 : -0.25};
+  return {(at.x < 0.0 ? -0.25 : 0.25) * window_mm.x / window_mm.y, 0.0};
+}
+
 /// Places of the window count in its heights from its middle, to the right and up.
 struct PickCamera {
   glm::dmat4 screen_from_model{1.0};

@@ -77,12 +77,13 @@ Result<void> Stage::Parts::prepare(OutputSink& with) {
   plane.aside_mm = traits.exact_pixels ? glm::dvec3(0.0) : glm::dvec3(plane.middle, 0.0);
   // The longest edge fits both ways, so that every side of the object does.
   const glm::dvec3 size = object.box.size();
-  const GalleryRoom beside = options.room.gallery ? gallery_room(rect.size.x / rect.size.y) : GalleryRoom{.words = 0.0};
+  const GalleryRoom gallery =
+      options.room.gallery ? gallery_room(rect.size.x / rect.size.y) : GalleryRoom{.words = 0.0};
   plane.magnification = options.magnification > 0 ? options.magnification
                         : traits.worn
                             ? 1.0  // life size
-                            : std::min((1.0 - 2.0 * std::max(options.room.margin, beside.sides)) * rect.size.x,
-                                       (1.0 - 2.0 * std::max(options.room.margin, beside.words)) * rect.size.y) /
+                            : std::min((1.0 - 2.0 * std::max(options.room.margin, gallery.sides)) * rect.size.x,
+                                       (1.0 - 2.0 * std::max(options.room.margin, gallery.words)) * rect.size.y) /
                                   std::max({size.x, size.y, size.z, 1e-9});
   return {};
 }
@@ -97,7 +98,9 @@ Observer Stage::Parts::viewer_at(const FollowedEyes& eyes) const {
     out.right_mm = 1e3 * eyes.right_m;
   }
   const double half_depth =
-      0.51 * plane.magnification * next.shown.fit * next.shown.view.zoom * glm::length(object.box.size()) + 1.0;
+      0.51 * plane.magnification * next.shown.fit * next.shown.view.zoom *
+          std::max(glm::length(object.box.size()), beside.mesh ? glm::length(beside.box.size()) : 0.0) +
+      1.0;
   out.front_mm = half_depth;
   out.back_mm = -half_depth;
   out.depth_factor = depth_factor(out);
@@ -122,8 +125,7 @@ Observer Stage::Parts::cameras(int half) const {
   const SinkTraits traits = sink->traits();
   if (!next.shown.lens_zoom || traits.views > 1 || traits.worn) return out;
   // Who compares two states wants to see both from the same side, so that each has an eye before its own middle.
-  const bool each = next.shown.compared && !next.followed;
-  const glm::dvec3 aside(each ? (half == 0 ? -0.25 : 0.25) * plane.window.x : 0.0, 0.0, 0.0);
+  const glm::dvec3 aside(next.shown.compared && !next.followed ? half_middle(half) : glm::dvec2(0.0), 0.0);
   for (glm::dvec3* const eye : {&out.left_mm, &out.right_mm, &out.nominal_mm})
     *eye = plane.aside_mm + aside + next.shown.view.zoom * (*eye - plane.aside_mm);
   return out;
@@ -161,14 +163,17 @@ Result<Stage::Parts::Object> Stage::Parts::make_object(const TriMesh& mesh, cons
   if (packed.triangles_of(visible_partitions(options.shading.parts)) == 0)
     return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
   object.box = packed.box_of(visible_partitions(options.shading.parts));
+  DUBSAR_ASSIGN(object.mesh, make_levels(std::move(packed), options.quality));
   if (options.quality == Quality::kAdaptive) {
-    DUBSAR_ASSIGN(object.mesh, LodMesh::growing(std::move(packed)));
     DUBSAR_ASSIGN(object.multi, MultiView::create({.budget_ms = kMovingMs}));
   } else {
-    DUBSAR_ASSIGN(object.mesh, LodMesh::exact(packed));
     DUBSAR_ASSIGN(object.renderer, Renderer::create());
   }
   return object;
+}
+
+Result<LodMesh> Stage::Parts::make_levels(PackedMesh packed, Quality quality) {
+  return quality == Quality::kAdaptive ? LodMesh::growing(std::move(packed)) : LodMesh::exact(packed);
 }
 
 Result<void> Stage::set_mesh(const TriMesh& mesh) {
@@ -177,6 +182,7 @@ Result<void> Stage::set_mesh(const TriMesh& mesh) {
   parts_->cost.exact_view_ms = 0.0;
   parts_->next.shown.marks = {};
   parts_->next.shown.compared.reset();
+  parts_->beside = {};
   parts_->painted = {};
   return parts_->prepare(*parts_->sink);
 }
@@ -232,23 +238,26 @@ bool Stage::Parts::moved() const noexcept {
 }
 
 void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) {
-  auto& mesh = parts_->object.mesh;
-  if (mesh && !mesh->complete() && parts_->painted.of) {  // the first picture has the machine for itself
-    const auto updated = mesh->update();
-    if (!updated) log_warning("view: {}; it stays coarse", updated.error().message);
-  }
+  for (auto* const mesh : {&parts_->object.mesh, &parts_->beside.mesh})
+    if (*mesh && !(*mesh)->complete() && parts_->painted.of) {  // the first picture has the machine for itself
+      const auto updated = (*mesh)->update();
+      if (!updated) log_warning("view: {}; it stays coarse", updated.error().message);
+    }
   parts_->next.shown = shown;
+  parts_->take_beside();
   parts_->next.now = now;
   parts_->cost.worked = false;
   parts_->next.viewer = parts_->viewer_at(eyes);
   parts_->next.followed = eyes.presence != Presence::kOff;
-  if (!mesh) return;
-  FieldNeeds needs = fields_needed(shown.style, shown.other);
-  if (shown.compared) {
-    const FieldNeeds more = fields_needed(shown.compared->style, shown.compared->other);
-    needs = {needs.integral || more.integral, needs.curvature || more.curvature};
-  }
-  parts_->measure(needs);
+  if (!parts_->has_mesh()) return;
+  const Shown& now_shown = parts_->next.shown;
+  FieldNeeds needs = fields_needed(now_shown.style, now_shown.other), more;
+  if (now_shown.compared) more = fields_needed(now_shown.compared->style, now_shown.compared->other);
+  if (parts_->has_beside())
+    parts_->measure(parts_->beside, more);
+  else
+    needs = needs.with(more);
+  parts_->measure(parts_->object, needs);
 }
 
 bool Stage::moved() const noexcept { return parts_->moved(); }
@@ -283,7 +292,7 @@ Result<void> Stage::Parts::paint_moved() {
   cost.coarse = 0;
   cost.begun_ms = 0.0;
   if (!has_mesh()) return fill_layers();
-  if (next.shown.compared) return paint_halves();
+  if (in_halves()) return paint_halves();
   set_scene();
   ViewArray& array = *layers.array;
   if (!object.multi) return object.renderer->render(scene(), painted.views, options.samples, array);
@@ -305,7 +314,7 @@ Result<void> Stage::Parts::refine() {
   const TimestampNs start = SteadyClock().now();
   const int before = cost.coarse;
   const auto end = start + static_cast<TimestampNs>(1e6 * options.budget_ms);
-  if (next.shown.compared) return refine_half(end);
+  if (in_halves()) return refine_half(end);
   DUBSAR_ASSIGN(cost.coarse, object.multi->refine_until(end, scene(), painted.views, options.samples, *layers.array));
   cost.begun_ms += milliseconds_since(start);
   if (cost.coarse == before) return {};

@@ -7,6 +7,7 @@
 
 #include "core/base/result.h"
 #include "core/base/system/clock.h"
+#include "core/compare/surface_difference.h"
 #include "core/image_io/image.h"
 #include "core/mesh/tri_mesh.h"
 #include "display/optics/off_axis.h"
@@ -86,18 +87,21 @@ struct Shown {
   Marks marks{};
   std::vector<LinesItem> before{};  ///< people's hands: mm of the screen frame
   Glow glow{};                      ///< where one would take hold, in the screen frame
-  /// Another one in the left half of every view, this one in the right half; null: this one alone. What that shows
-  /// beside it is not looked at.
+  /// Another one in the left half of every view, this one in the right half (above and below where the panel is
+  /// upright); null: this one alone. What that shows beside it is not looked at.
   std::shared_ptr<const Shown> compared{};
-  bool lens_zoom = true;  ///< of one view: as Stage::camera_mm() says; false: the eyes stay where they are
+  /// What `compared` is of, where it is another surface: the stage's own comes first then, and both are of one scale.
+  std::shared_ptr<const TriMesh> surface{};
+  std::optional<LabelItem> caption{};  ///< of a half, below what is in it; the stage knows its place
+  bool lens_zoom = true;               ///< of one view: as Stage::camera_mm() says; false: the eyes stay where they are
   friend bool operator==(const Shown& a, const Shown& b) {
     return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks && a.before == b.before &&
            a.glow == b.glow && a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom &&
            a.view.pan == b.view.pan && a.view.nearer == b.view.nearer &&
            a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
-           a.other == b.other && a.parts == b.parts && a.lens_zoom == b.lens_zoom && !a.compared == !b.compared &&
-           (!a.compared || *a.compared == *b.compared);
+           a.other == b.other && a.parts == b.parts && a.lens_zoom == b.lens_zoom && a.surface == b.surface &&
+           a.caption == b.caption && !a.compared == !b.compared && (!a.compared || *a.compared == *b.compared);
   }
 };
 
@@ -177,6 +181,8 @@ class Stage {
   /// the stage or is taken away.
   void set_overlay(LayerPainter* painter);
 
+  /// How far the stage's surface is from the one beside it, where its colours tell it; none: not known yet.
+  const SurfaceDifference* difference() const noexcept;
   /// How much of the surface has been measured, 0..1, while what is shown waits for it; none: nothing is measured.
   std::optional<double> measuring() const noexcept;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/stage/pick_camera.h"
 #include "app/stage/stage_parts.h"
 
 namespace dubsar::app {
@@ -118,7 +119,7 @@ Result<std::optional<glm::dvec3>> Stage::place_at(const glm::dvec2& at) {
   const int x = static_cast<int>(std::floor((0.5 + at.x * aspect) * kProbe)),
             y = static_cast<int>(std::floor((0.5 + at.y) * kProbe));
   const View one = crop_view(whole, x, y, 1, 1, kProbe, kProbe);
-  if (p.next.shown.compared && at.x < 0) return std::nullopt;  // that half is not the present state
+  if (other_half(p.next.shown, p.plane.window, at)) return std::nullopt;
   Parts::Painted before = std::exchange(p.painted, {});
   p.set_scene();
   std::erase_if(p.painted.items, [](const DrawItem& item) { return !std::holds_alternative<MeshItem>(item); });

@@ -26,9 +26,11 @@ struct Stage::Parts {
     Box box;
     const TriMesh* source = nullptr;
     std::optional<LodMesh> mesh;
-    std::unique_ptr<FieldMaker> maker;  // while figures of the surface are measured
-    std::optional<Renderer> renderer;   // kExact, and for stills
-    std::optional<MultiView> multi;     // kAdaptive
+    std::shared_ptr<const TriMesh> kept, differs_from;  // of the one beside: itself; what the difference is from
+    bool refused = false;                               // such a difference
+    std::unique_ptr<FieldMaker> maker;                  // while figures of the surface are measured
+    std::optional<Renderer> renderer;                   // kExact, and for stills
+    std::optional<MultiView> multi;                     // kAdaptive
   };
   /// What a wearer reads: it stands in the room.
   struct Page {
@@ -82,7 +84,7 @@ struct Stage::Parts {
   };
   StageOptions options;
   std::unique_ptr<OutputSink> sink;
-  Object object;
+  Object object, beside;  // beside: another surface in the other half; nothing where there is none
   Layers layers;
   Plane plane;
   Next next;
@@ -94,16 +96,39 @@ struct Stage::Parts {
   explicit Parts(const StageOptions& given) : options(given) {}
   static Result<Object> make_object(const TriMesh& mesh, const StageOptions& options);
   Result<void> prepare(OutputSink& with);
-  void measure(const FieldNeeds& needs);
-  FieldNeeds measured() const noexcept;
-  Style ready(Style style) const;
+  static Result<LodMesh> make_levels(PackedMesh packed, Quality quality);
+  void take_beside();
+  bool has_beside() const noexcept { return next.shown.compared && next.shown.compared->surface; }
+  const Object& of(const Shown& shown) const noexcept { return shown.surface ? beside : object; }
+  void measure(Object& of, FieldNeeds needs);
+  Result<void> carry(Object& of, SurfaceFields made, std::shared_ptr<const TriMesh> other);
+  FieldNeeds measured(const Object& of) const noexcept;
+  Style ready(Style style, const Object& of) const;
   Observer viewer_at(const FollowedEyes& eyes) const;
   double depth_factor(const Observer& viewer) const;
-  /// The eyes that cameras are made for; of two states beside each other those of a half, 0 left, 1 right.
-  Observer cameras(int half = 1) const;
-  /// Where what is shown stands: with another one beside it in the middle of its half, 0 left, 1 right.
+  /// The eyes that cameras are made for; of two beside each other those of a half, 0 left or above, 1 right or below.
+  Observer cameras(int half) const;
+  Observer cameras() const { return cameras(own_half()); }
+  /// Where what is shown stands: with another one beside it in the middle of its half.
   glm::dmat4 placed(const Shown& shown, int half) const;
-  glm::dmat4 placed() const { return placed(next.shown, 1); }
+  glm::dmat4 placed() const { return placed(next.shown, own_half()); }
+  int own_half() const noexcept { return has_beside() ? 0 : 1; }
+  const Shown& shown_in(int half) const { return half == own_half() ? next.shown : *next.shown.compared; }
+  /// Worn displays show a room, in which two surfaces stand side by side.
+  bool in_halves() const { return next.shown.compared && !(has_beside() && sink->traits().worn); }
+  glm::dvec2 half_middle(int half) const;
+  double half_scale() const;
+  bool upright() const noexcept { return plane.window.y > plane.window.x; }
+  PixelSize half_size(const PixelSize& whole) const {
+    return upright() ? PixelSize{whole.width, whole.height / 2} : PixelSize{whole.width / 2, whole.height};
+  }
+  /// Its lower left pixel.
+  glm::ivec2 half_corner(int half, const PixelSize& whole) const {
+    const PixelSize part = half_size(whole);
+    if (upright()) return {0, half == 0 ? whole.height - part.height : 0};
+    return {half == 0 ? 0 : whole.width - part.width, 0};
+  }
+  View view_of_half(const View& whole, int half, const PixelSize& size) const;
   bool moved() const noexcept;
   double budget_ms() const;  // for the exact views of a picture
   Background background() const {
@@ -121,12 +146,14 @@ struct Stage::Parts {
             painted.judge ? &*painted.judge : nullptr};
   }
   bool has_mesh() const noexcept { return object.mesh.has_value(); }
-  void set_scene() { set_scene(next.shown, 1); }
+  void set_scene() { set_scene(next.shown, own_half()); }
+  void add_caption(const Shown& shown, int half);
   void set_scene(const Shown& shown, int half);
   std::vector<View> set_half(int half);
   Result<void> show_half(int half);
   Result<void> paint_halves();
   Result<void> refine_half(TimestampNs end);
+  Result<Image> still_of(int half, int factor, const PixelSize& whole);
   Result<void> fill_layers();
   Result<void> paint_moved();
   Result<void> paint_overlay_marks(ViewArray& array);
@@ -134,7 +161,8 @@ struct Stage::Parts {
   Result<void> refine();
   Result<void> paint_page();
   bool may_refine() const noexcept {
-    return cost.coarse > 0 && object.mesh->has_exact() && next.now - painted.moved_at >= kRestNs;
+    return cost.coarse > 0 && object.mesh->has_exact() && (!beside.mesh || beside.mesh->has_exact()) &&
+           next.now - painted.moved_at >= kRestNs;
   }
   void took(double ms, std::size_t count);
 };

@@ -62,27 +62,53 @@ Result<Image> Stage::still(int factor) {
     return fail(ErrorKind::kUsage, "picture: {} times {} x {} pixels asked for, expected at most {} on a side", factor,
                 view.width, view.height, kMostSide);
   if (!p.has_mesh()) return fail(ErrorKind::kUsage, "picture: there is no surface");
-  if (!p.measured().covers(fields_needed(p.next.shown.style, p.next.shown.other)))
+  const auto all_there = [&](const Shown& shown) {
+    return p.measured(p.of(shown)).covers(fields_needed(shown.style, shown.other));
+  };
+  if (!all_there(p.next.shown) || (p.has_beside() && !all_there(*p.next.shown.compared)))
     return fail(ErrorKind::kTryAgain,
                 "picture: the surface is still being measured; ask again when its colours are there");
   if (!p.object.renderer) {
     DUBSAR_ASSIGN(p.object.renderer, Renderer::create());
   }
-  DUBSAR_ASSIGN(ViewArray array, ViewArray::create(factor * view.width, factor * view.height, 1));
-  const std::span<const View> views = p.sink->views(p.cameras());
-  const View middle = views[views.size() / 2];
-  Parts::Painted before = p.painted;
-  p.set_scene();
-  p.painted.judge.reset();                  // one view decides for itself
-  for (DrawItem& item : p.painted.items) {  // as thick as they look in the window
+  const PixelSize whole{factor * view.width, factor * view.height};
+  if (!p.in_halves()) return p.still_of(p.own_half(), factor, whole);
+  DUBSAR_ASSIGN(Image first, p.still_of(0, factor, whole));
+  DUBSAR_ASSIGN(const Image second, p.still_of(1, factor, whole));
+  Image out(whole.width, whole.height, first.channels);
+  for (int half = 0; half < 2; ++half) {
+    const Image& part = half == 0 ? first : second;
+    const glm::ivec2 corner = p.half_corner(half, whole);
+    const int top = whole.height - corner.y - part.height;
+    for (int y = 0; y < part.height; ++y)
+      std::copy_n(part.at(0, y), static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.channels),
+                  out.at(corner.x, top + y));
+  }
+  return out;
+}
+
+/// A half, or all where there are none, of a picture that has so many pixels.
+Result<Image> Stage::Parts::still_of(int half, int factor, const PixelSize& whole) {
+  const std::span<const View> views = sink->views(cameras(half));
+  View middle = views[views.size() / 2];
+  PixelSize size = whole;
+  if (in_halves()) {
+    middle = view_of_half(middle, half, whole);
+    size = half_size(whole);
+  }
+  DUBSAR_ASSIGN(ViewArray array, ViewArray::create(size.width, size.height, 1));
+  Painted before = painted;
+  set_scene(shown_in(half), half);
+  painted.judge.reset();                  // one view decides for itself
+  for (DrawItem& item : painted.items) {  // as thick as they look in the window
     if (auto* lines = std::get_if<LinesItem>(&item)) lines->width_px *= factor;
     if (auto* label = std::get_if<LabelItem>(&item)) {
       label->height_px *= factor;
       label->shift_px *= factor;
     }
   }
-  const auto drawn = p.object.renderer->render(p.scene(), std::span(&middle, 1), p.options.samples, array);
-  p.painted = std::move(before);
+  const auto drawn = object.renderer->render(scene(), std::span(&middle, 1), options.samples, array);
+  painted = std::move(before);
   if (!drawn) return tl::unexpected<Error>(drawn.error());
   return array.read_layer(0);
 }

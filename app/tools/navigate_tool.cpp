@@ -1,5 +1,9 @@
 #include "app/tools/navigate_tool.h"
 
+#include <utility>
+
+#include "app/stage/pick_camera.h"
+
 namespace dubsar::app {
 
 void NavigateTool::see(const InputEvent& event) {
@@ -32,8 +36,11 @@ bool NavigateTool::take(InputEvent& event) {
   const bool pressed = event.down && (event.kind == EventKind::kButton || event.kind == EventKind::kPinch);
   if (event.kind == EventKind::kWheel || pressed) tell_depth(event);
   // Who turns and zooms knows nothing of what stands beside the surface.
-  if (event.at) event.at->x -= scene_.window.aside;
-  if (event.eye) event.eye->x -= scene_.window.aside;
+  if (event.at && !std::exchange(held_, event.kind == EventKind::kMotion ? held_ : pressed))
+    middle_ =
+        glm::dvec2(scene_.window.aside, 0.0) + half_offset(scene_.stage->shown(), scene_.stage->window_mm(), *event.at);
+  if (event.at) *event.at -= middle_;
+  if (event.eye) *event.eye -= glm::dvec3(middle_, 0.0);
   if (event.touched)
     steering_.put(event);
   else

@@ -28,6 +28,8 @@ class NavigateTool final : public Tool {
   ToolScene& scene_;
   InputController& steering_;
   WindowEvents& mouse_;
+  glm::dvec2 middle_{0.0};  ///< of what was taken hold of, from the window's, in its heights
+  bool held_ = false;
   std::optional<InputEvent> wheeled_;  ///< the last turn of the wheel or step of fingers, with what was found there
 };
 

@@ -8,6 +8,7 @@
 namespace dubsar::app {
 
 std::optional<Picked> ToolScene::picked_at(const glm::dvec2& at) const {
+  if (other_half(stage->shown(), stage->window_mm(), at)) return std::nullopt;
   const Shown now = shown(document(), window.view);
   return picker->pick(now.parts, PickCamera::of(*stage).ray(at), now.clips);
 }

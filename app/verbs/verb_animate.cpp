@@ -16,6 +16,7 @@
 #include "app/publish/video.h"
 #include "app/verbs/display_picture.h"
 #include "app/verbs/told_session.h"
+#include "app/verbs/view_files.h"
 #include "app/viewer/film_painter.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/system/log.h"
@@ -156,7 +157,15 @@ Result<VerbResult> run(const AnimateRequest& options, bool sized, Progress& prog
   }
   for (const std::string& name : strange_parts(film.keys, document))
     log_warning("animate: the film moves a part {}, which {} does not have", name, options.in);
-  DUBSAR_ASSIGN(FilmPainter painter, FilmPainter::create(mesh, stage, document, film.keys));
+  std::optional<CompanionSurface> companion;
+  if (!document.companion.path.empty()) {
+    document.source.path = fs::absolute(options.in).string();
+    ViewOptions view;
+    view.stage = stage;
+    DUBSAR_ASSIGN(OpenedSurface read, beside_reader(view, {.upright = true})(companion_file(document), progress, {}));
+    companion.emplace(std::move(read));
+  }
+  DUBSAR_ASSIGN(FilmPainter painter, FilmPainter::create(mesh, stage, document, film.keys, std::move(companion)));
 
   const SinkTraits traits = painter.traits();
   Document looks = document;  // what the film's text does not say, without the session's marks

@@ -207,6 +207,7 @@ Result<VerbResult> write_told(const RenderRequest& options, const SinkSpec& disp
                               const TriMesh& mesh, Progress& progress) {
   ViewOptions view = session_of(options, display, shown);
   view.work.upright = options.view == "front";
+  view.around.title = std::filesystem::path(options.in).filename().string();
   DUBSAR_ASSIGN(const ToldSession told, tell_session(mesh, view, options.told, ToldPart::kPicture, progress));
   return write_display_picture(options.display, display, shown, told.seen, options.out);
 }

@@ -75,6 +75,14 @@ ReadSurface surface_reader(const ViewOptions& options, const FileReading& readin
   };
 }
 
+ReadSurface beside_reader(ViewOptions options, FileReading reading) {
+  options.work = {};
+  reading.keeps_work = false;
+  reading.scan.reset();
+  return [read = surface_reader(options, reading)](const std::filesystem::path& file, Progress& progress,
+                                                   const TellCoarse&) { return read(file, progress, {}); };
+}
+
 Result<std::optional<ImportOptions>> asked_scan(const std::string& scan, const InputOptionTexts& reading,
                                                 const std::vector<std::string>& surfaces) {
   DUBSAR_ASSIGN(ImportOptions asked, parse_input_options(scan, reading));

@@ -29,6 +29,11 @@ Result<void> FileList::step(int by) {
   return loader_ != nullptr ? loader_->step(by) : tl::unexpected<Error>(one_surface());
 }
 
+std::string FileList::next_file() const {
+  if (loader_ == nullptr || loader_->files().size() < 2) return {};
+  return loader_->files()[(loader_->shown().value_or(0) + 1) % loader_->files().size()].string();
+}
+
 std::string FileList::present_folder() const {
   std::error_code error;
   if (loader_ != nullptr && loader_->shown()) return loader_->files()[*loader_->shown()].parent_path().string();
@@ -46,6 +51,7 @@ std::string FileList::title(const std::string& shown) const {
 FilesState FileList::state(const Choosing& choosing, bool has_surface, TimestampNs now) {
   FilesState out;
   out.has_surface = has_surface;
+  out.beside = choosing.beside;
   if (loader_ == nullptr) return out;
   for (const fs::path& file : loader_->files()) out.names.push_back(file.filename().string());
   out.shown = loader_->shown().value_or(0);

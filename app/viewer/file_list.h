@@ -22,6 +22,7 @@ class FileList {
   Result<void> open(const std::vector<std::filesystem::path>& files);
   Result<void> open_recent(std::size_t number);
   Result<void> step(int by);
+  std::string next_file() const;
   std::string present_folder() const;
   /// What the panels show of files; folders are looked into while somebody chooses.
   FilesState state(const Choosing& choosing, bool has_surface, TimestampNs now);

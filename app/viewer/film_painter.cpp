@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "app/panels/overlay.h"
+#include "app/panels/panel_font.h"
 #include "app/viewer/first_document.h"
 
 namespace dubsar::app {
@@ -39,7 +41,7 @@ std::vector<std::string> strange_parts(std::span<const Keyframe> film, const Doc
 }
 
 Result<FilmPainter> FilmPainter::create(const TriMesh& mesh, const StageOptions& options, Document document,
-                                        std::vector<Keyframe> film) {
+                                        std::vector<Keyframe> film, std::optional<CompanionSurface> companion) {
   DUBSAR_ASSIGN(auto sink, options.catalog->make(options.display));
   DUBSAR_TRY(sink->configure(options.screen));
   DUBSAR_TRY(check_traits(sink->traits()));
@@ -52,13 +54,21 @@ Result<FilmPainter> FilmPainter::create(const TriMesh& mesh, const StageOptions&
   out.options_ = std::move(exact);
   out.document_ = std::move(document);
   out.film_ = std::move(film);
+  out.companion_ = std::move(companion);
+  if (out.companion_) {
+    DUBSAR_ASSIGN(out.font_, LabelFont::create(panel_font()));
+  }
   return out;
 }
 
 Result<DisplayPicture> FilmPainter::picture(double time_s) {
   Document now = document_;
   show_keyframe(now, moment_at(film_, time_s));
-  stage_->show(shown_of(now, view_of(now), options_, stage_->box_mm()), FollowedEyes(), 0);
+  Shown shown = shown_of(now, view_of(now), options_, stage_->box_mm());
+  const int height = stage_->traits().view.height;
+  const double letters = std::max(1.0, height / Overlay::layout(height, stage_->window_mm(), 0.0).y);
+  if (companion_) put_beside(shown, now, *companion_, options_, {font_.get(), now.source.path, letters});
+  stage_->show(shown, FollowedEyes(), 0);
   DUBSAR_TRY(stage_->paint(presenter_->surface()));
   const SinkTraits traits = stage_->traits();
   DisplayPicture out;

@@ -7,6 +7,7 @@
 
 #include "app/document/document.h"
 #include "app/stage/stage.h"
+#include "app/viewer/companion.h"
 #include "app/viewer/presenter/presenter.h"
 #include "display/sinks/render_display.h"
 
@@ -22,10 +23,11 @@ std::vector<std::string> strange_parts(std::span<const Keyframe> film, const Doc
 /// One thread. A picture depends on its time alone, not on those that were made before it.
 class FilmPainter {
  public:
-  /// `options` says which display, of how many pixels, and how many samples. kUsage for displays that make no single
-  /// picture (worn ones, and those that show fields in turn); kUnavailable without GL 4.5; errors of Stage::create().
+  /// `companion` is what the document names, where it does. `options` says which display, of how many pixels, and how
+  /// many samples. kUsage for displays that make no single picture (worn ones, and those that show fields in turn);
+  /// kUnavailable without GL 4.5; errors of Stage::create().
   static Result<FilmPainter> create(const TriMesh& mesh, const StageOptions& options, Document document,
-                                    std::vector<Keyframe> film);
+                                    std::vector<Keyframe> film, std::optional<CompanionSurface> companion = {});
 
   /// What the display's panel shows at `time_s`, RGB.
   Result<DisplayPicture> picture(double time_s);
@@ -39,6 +41,8 @@ class FilmPainter {
   StageOptions options_;
   Document document_;
   std::vector<Keyframe> film_;
+  std::optional<CompanionSurface> companion_;
+  std::unique_ptr<LabelFont> font_;
 };
 
 }  // namespace dubsar::app

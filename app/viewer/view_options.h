@@ -10,6 +10,7 @@
 #include "app/commands/command_table.h"
 #include "app/commands/step_script.h"
 #include "app/document/document.h"
+#include "app/session/file_loader.h"
 #include "app/session/session_work.h"
 #include "app/stage/stage.h"
 #include "app/steering/source_set.h"
@@ -86,6 +87,7 @@ struct ViewOptions {
       steps{};                      ///< said at their times, from the first picture on; one that fails ends the session
   std::vector<Command> commands{};  ///< in place of those that change what is looked at
   SessionWords around{};
+  ReadSurface read_beside{};             ///< what documents set beside their surface; none: nothing
   std::vector<SidePanelOptions> also{};  ///< further panels, which show the same
   SessionController* guide = nullptr;    ///< leads the session and says when it ends; null: nobody does. Outlives it
 };

@@ -183,6 +183,7 @@ void Viewer::show(TimestampNs now, const Steered& steered) {
   tools_->box.hide(film);
   measure_window();
   for (Tool* const tool : tools_->all()) tool->update(now);
+  if (const auto& wrong = tools_->companion.failed(); wrong && options_.time.fps > 0) steps_.fail_with(*wrong);
   for (Tool* const tool : tools_->all()) tool->contribute(shown);
   scene_.seen = nullptr;
   stage_->show(shown, steered.eyes, now);

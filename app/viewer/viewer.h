@@ -18,6 +18,7 @@
 #include "app/tools/session_controller.h"
 #include "app/tools/touch_tool.h"
 #include "app/tools/wedges_tool.h"
+#include "app/viewer/companion.h"
 #include "app/viewer/kept_work.h"
 #include "app/viewer/step_runner.h"
 #include "app/viewer/viewer_place.h"
@@ -72,8 +73,8 @@ class Viewer final {
   void tell(ViewResult& out) const;
 
   bool has_surface() const noexcept { return scene_.has_surface(); }
-  bool shows_surface() const noexcept { return has_surface() || files_.coarse != nullptr; }  ///< or a coarse one
-  bool opening() const noexcept { return files_.list.opening(); }                            ///< a file is being read
+  bool shows_surface() const noexcept { return has_surface() || files_.coarse != nullptr; }       ///< or a coarse one
+  bool opening() const noexcept { return files_.list.opening() || tools_->companion.opening(); }  ///< a file is read
   const TriMesh& mesh() const noexcept { return *scene_.mesh; }
   const Stage& stage() const noexcept { return *stage_; }
   const Document& document() const noexcept { return editor_->document(); }
@@ -109,7 +110,8 @@ class Viewer final {
     SlicesTool slices;
     MarksTool marks;
     WedgesTool wedges;
-    std::array<Tool*, 7> all() { return {&light, &box, &click, &navigate, &marks, &wedges, &slices}; }
+    CompanionTool companion;
+    std::array<Tool*, 8> all() { return {&light, &box, &click, &navigate, &marks, &wedges, &slices, &companion}; }
   };
   /// What is known of the surface, and shown of the film.
   struct Known {

@@ -7,20 +7,6 @@
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
-namespace {
-
-/// What was done to an object that stood at `home` done to one that stands at `next`; the light stays the next one's.
-ViewState carried_over(const ViewState& home, const ViewState& seen, const ViewState& next) {
-  ViewState out = next;
-  if (seen.rotation != home.rotation)
-    out.rotation = glm::normalize(seen.rotation * glm::conjugate(home.rotation) * next.rotation);
-  out.zoom = next.zoom * seen.zoom / home.zoom;
-  out.pan = next.pan + seen.pan - home.pan;
-  return out;
-}
-
-}  // namespace
-
 /// Shows the file that was read meanwhile, or says why it cannot be; nothing where none was.
 std::optional<Result<void>> Viewer::put_read() {
   auto read = given_.loader->take();
@@ -104,6 +90,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   ui.note = 0;
   ui.pointing.wedge = 0;
   ui.leaving = false;
+  ui.deleting = 0;
   ui.sweep.reset();
   editor_ = files_.kept.begin(
       std::move(found), std::move(files_.opened->session),
@@ -111,6 +98,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   scene_.editor = editor_.get();
   editor_->ui() = std::move(ui);
   begin_surface();
+  tools_->companion.set_own_name(options_.around.title);
   for (Tool* const tool : tools_->all()) tool->let_go();
   known_.film.stop();
   tools_->light.begin();

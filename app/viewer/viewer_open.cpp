@@ -101,12 +101,16 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
       std::make_unique<InputController>(options_.mapping, view_of(first.document), follow_options(options_.stage));
   displays_->seen_by(*input_.steering);
   DUBSAR_TRY(make_sources());
+  LabelFont& letters = *font;
   tools_.reset(new Tools{LightTool(scene_), BoxTool(scene_), ClickTool(scene_),
                          NavigateTool(scene_, *input_.steering, input_.mouse), SlicesTool(scene_),
-                         MarksTool(scene_, std::move(font)), WedgesTool(scene_)});
+                         MarksTool(scene_, std::move(font)), WedgesTool(scene_),
+                         CompanionTool(scene_, options_.read_beside, letters)});
+  tools_->companion.set_own_name(options_.around.title);
   place_ = std::make_unique<ViewerPlace>(
       ViewerPlace::Parts{options_, given_.presenter, given_.clock, scene_, *displays_, *input_.steering,
                          *input_.sources, files_.list, tools_->slices, known_.film, known_.wedges, known_.exporter,
+                         tools_->companion,
                          [this]() -> Result<void> {  // simulated time stands still while a file is read
                            if (options_.time.fps == 0) return {};
                            given_.loader->wait();

@@ -1,14 +1,17 @@
 // What stands over the pictures of a session.
 
 #include <algorithm>
+#include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "app/commands/sides.h"
+#include "app/document/join.h"
 #include "app/panels/slice_panel.h"
 #include "app/panels/state_page.h"
 #include "app/stage/marks.h"
 #include "app/viewer/viewer.h"
 #include "app/words/language.h"
+#include "core/base/files/kept_file.h"
 #include "core/base/system/second.h"
 
 namespace dubsar::app {
@@ -16,6 +19,12 @@ namespace {
 
 constexpr TimestampNs kBallNs = kSecondNs;  // after the light has moved
 constexpr TimestampNs kNoticeNs = 6 * kSecondNs, kFadeNs = kSecondNs, kHelpRefreshNs = kSecondNs / 2;
+
+OtherWorkRow row_of(const OtherWork& other, const Document& mine) {
+  const Document& theirs = other.work.document;
+  return {set_aside_day(other.file), std::filesystem::path(theirs.source.path).filename().string(),
+          marks_more(Document(), add_marks(Document(), theirs)), marks_more(mine, add_marks(mine, theirs)).empty()};
+}
 
 /// What somebody said, else the desktop; 0: neither, what suits the window.
 double ui_scale(const UiState& ui, const GlfwWindow* window) {
@@ -64,6 +73,7 @@ PanelState Viewer::panel_state(TimestampNs now) {
   out.ui.pointing.at.reset();  // it moves, and nothing here shows it
   out.evidence = known_.evidence.of(visible_partitions(document()));
   out.files = files_.list.state(ui().choosing, has_surface(), now);
+  if (!out.files.opening) out.files.opening = tools_->companion.opening();
   if (tools_->slices.shown()) out.slices = slices();
   out.finding = known_.wedges.state();
   out.exporting = known_.exporter.state();
@@ -73,6 +83,8 @@ PanelState Viewer::panel_state(TimestampNs now) {
       glm::length(glm::dvec3(stage_->screen_from_model()[0]));  // of the screen for one mm of the object
   out.mm_per_px = window.y / (scene_.window.layout.y * scale);
   out.faint = present_.report.control == Control::kMouse || present_.report.control == Control::kHands;
+  if (ui().drawer == "files")
+    for (const OtherWork& other : editor_->others()) out.others.push_back(row_of(other, document()));
   if (ui().drawer != "film") return out;
   // One at a time, while nothing else moves.
   const bool rests = !present_.report.moving && !out.playing && !out.faint;
@@ -116,7 +128,7 @@ void Viewer::update_overlay(TimestampNs now) {
   const bool files = ui().choosing.open || opening();
   if ((ui().panels || ui().palette || files) && !ui().help) text.panels = panel_state(now);
   text.legend = ui().legend && has_surface() && !stage_->measuring()
-                    ? legend_of(scene_.shown(document(), present_.report.view).style)
+                    ? legend_of(stage_->shown().style, stage_->difference())
                     : std::nullopt;
   text.light.reset();
   const TimestampNs moved = tools_->light.moved();

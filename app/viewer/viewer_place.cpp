@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/commands/sides.h"
+#include "app/stage/pick_camera.h"
 #include "app/words/text.h"
 #include "core/base/numbers/inch.h"
 #include "core/base/system/utc_day.h"
@@ -81,6 +82,14 @@ Result<void> ViewerPlace::switch_file(int step) {
   return to_.file_asked();
 }
 
+/// What is being read to stand beside is taken away.
+bool ViewerPlace::stop_opening() {
+  if (to_.files.loader() != nullptr && to_.files.loader()->stop()) return true;
+  if (!to_.companion.opening()) return false;
+  to_.scene.ask.run("take_away", 0);
+  return true;
+}
+
 void ViewerPlace::end() {
   if (to_.may_end()) to_.presenter.end();
 }
@@ -88,7 +97,10 @@ void ViewerPlace::end() {
 Result<SurfacePin> ViewerPlace::pin_seen() {
   const ToolScene& scene = to_.scene;
   auto picked = scene.picked_at(scene.window.pointer);
-  if (!picked) picked = scene.picked_at({scene.window.aside, 0.0});
+  const Shown& shown = scene.stage->shown();
+  const double own = shown.compared && !shown.compared->surface ? 1.0 : -1.0;  // which half
+  const glm::dvec2 middle = half_offset(shown, scene.stage->window_mm(), {own, -own});
+  if (!picked) picked = scene.picked_at({scene.window.aside + middle.x, middle.y});
   if (!picked) return fail(ErrorKind::kUsage, "there is no surface under the pointer");
   return scene.pin(scene.scan_place(*picked));
 }

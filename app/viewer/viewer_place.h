@@ -7,6 +7,7 @@
 #include "app/steering/source_set.h"
 #include "app/tools/film_tool.h"
 #include "app/tools/slices_tool.h"
+#include "app/viewer/companion.h"
 #include "app/viewer/display_switch.h"
 #include "app/viewer/exporter.h"
 #include "app/viewer/file_list.h"
@@ -31,6 +32,7 @@ class ViewerPlace final : public Workplace {
     FilmTool& film;
     WedgeFinder& wedges;
     Exporter& exporter;
+    CompanionTool& companion;
     std::function<Result<void>()> file_asked;  ///< another file is to be shown
     std::function<void()> sources_changed;
     std::function<bool()> may_end;
@@ -46,7 +48,8 @@ class ViewerPlace final : public Workplace {
   Result<void> open_file(const std::string& path) override;
   Result<void> open_recent(std::size_t number) override;
   Result<void> switch_file(int step) override;
-  bool stop_opening() override { return to_.files.loader() != nullptr && to_.files.loader()->stop(); }
+  std::string next_file() const override { return to_.files.next_file(); }
+  bool stop_opening() override;
   std::string present_folder() const override { return to_.files.present_folder(); }
   void say(std::string words) override { to_.scene.ask.say(std::move(words)); }
   void end() override;

@@ -44,9 +44,11 @@ Result<SurfaceDifference> difference_of(const TriMesh& a, const TriMesh& b, doub
     }
   }
   out.vertex_mm.assign(points.size(), std::numeric_limits<double>::quiet_NaN());
+  progress.begin("compare", static_cast<std::int64_t>(points.size()), "vertex");
   parallel_for(static_cast<std::int64_t>(points.size()), 256, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);
-    if (inferred[v] != 0) return;
+    progress.advance(1);
+    if (inferred[v] != 0 || progress.cancelled()) return;
     const glm::dvec3 p = out.alignment.a_from_b(points[v]);
     if (!std::isfinite(p.x + p.y + p.z)) return;
     const NearPlace near = surface.nearest(p, reach_mm);
@@ -55,6 +57,8 @@ Result<SurfaceDifference> difference_of(const TriMesh& a, const TriMesh& b, doub
     const bool outside = glm::dot(p - near.at_mm, near.normal) >= 0;
     out.vertex_mm[v] = outside ? near.distance_mm : -near.distance_mm;
   });
+  if (progress.cancelled()) return cancelled_error();
+  progress.end();
   std::vector<WeighedAmount> amounts;
   double sum = 0.0, sum2 = 0.0, close = 0.0, near = 0.0;
   for (std::size_t v = 0; v < points.size(); ++v) {

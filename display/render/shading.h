@@ -26,6 +26,7 @@ enum class ColorMap {
   kGaussian,    ///< Gaussian curvature
   kShapeIndex,  ///< from cup (-1) over saddle (0) to cap (1)
   kCurvedness,  ///< how much it is bent, whichever way
+  kDifference,  ///< how far it lies outside (above 0) or inside another surface that it was laid on
 };
 
 /// Colours of figures of the surface. All are told apart by people who do not see red and green.

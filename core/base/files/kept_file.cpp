@@ -87,6 +87,13 @@ Result<fs::path> KeptFile::set_aside() {
   return fail(ErrorKind::kCannotCreate, "cannot set {} aside: too many files of its name are there", file_.string());
 }
 
+std::string set_aside_day(const fs::path& file) {
+  constexpr std::size_t kDay = 10;  // letters
+  const std::string name = file.filename().string();
+  const std::size_t at = name.rfind(kOrphan);
+  return at == std::string::npos ? std::string() : name.substr(at + kOrphan.size(), kDay);
+}
+
 std::vector<fs::path> set_aside_of(const fs::path& file) {
   std::vector<fs::path> out;
   const std::string beginning = file.filename().string() + std::string(kOrphan);

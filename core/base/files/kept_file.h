@@ -49,6 +49,9 @@ class KeptFile {
   std::optional<std::string> known_ = std::string();  ///< checksum; "": nothing is there; none: not known
 };
 
+/// The day in a name that set_aside() gave, as 2026-11-27; empty: it is none.
+std::string set_aside_day(const std::filesystem::path& file);
+
 /// The names that set_aside() gave to files that had this one.
 std::vector<std::filesystem::path> set_aside_of(const std::filesystem::path& file);
 

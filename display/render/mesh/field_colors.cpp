@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kMostDistance = 0.12;                                 // deep wedges and their rims
 constexpr double kMostMean = 2.0, kMostGaussian = 2.0, kMostBent = 3;  // 1/mm, 1/mm2: rims of wedges
+constexpr double kMostDifference = 0.25;                               // mm, as of dubsar compare
 constexpr double kDeepest = 0.06, kClay = 1.25;
 
 /// From concave to convex; both ends are as dark, whatever colours one sees.
@@ -70,6 +71,9 @@ FieldScale field_scale(const Style& style) {
     case ColorMap::kCurvedness:
       out = {"curvedness", "1/mm", 0.0, kMostBent};
       break;
+    case ColorMap::kDifference:
+      out = {"difference", "mm", -kMostDifference, kMostDifference};
+      break;
     default:
       break;
   }
@@ -82,14 +86,15 @@ FieldScale field_scale(const Style& style) {
 std::array<Rgb8, kShapeRows> field_colors(const Style& style) {
   std::array<Rgb8, kShapeRows> out{};
   FieldColors colors = style.field_colors;
-  if (colors == FieldColors::kDesigned && style.map != ColorMap::kIntegral)
+  if (colors == FieldColors::kDesigned && style.map != ColorMap::kIntegral && style.map != ColorMap::kDifference)
     colors = style.map == ColorMap::kCurvedness ? FieldColors::kCividis : FieldColors::kBlueOrange;
   for (int i = 0; i < kShapeRows; ++i) {
     const double at = i / (kShapeRows - 1.0);
     Rgb8& color = out[static_cast<std::size_t>(i)];
     switch (colors) {
       case FieldColors::kDesigned:
-        color = clay(style.base_color, 2.0 * at - 1.0);
+        color = style.map == ColorMap::kDifference ? difference_color(2.0 * at - 1.0, 1.0)
+                                                   : clay(style.base_color, 2.0 * at - 1.0);
         break;
       case FieldColors::kBlueOrange:
         color = between(kBlueOrange, at);
@@ -106,6 +111,7 @@ std::array<Rgb8, kShapeRows> field_colors(const Style& style) {
 }
 
 Rgb8 field_color(const Style& style, double figure) {
+  if (std::isnan(figure)) return difference_color(figure, 1.0);
   const FieldScale scale = field_scale(style);
   const auto colors = field_colors(style);
   return between(colors, (figure - scale.from) / (scale.to - scale.from));

@@ -6,9 +6,10 @@
 
 namespace dubsar {
 
-FieldMaker::FieldMaker(const TriMesh& mesh, const FieldNeeds& needs)
-    : needs_(needs), thread_([this, &mesh] {
-        auto made = guarded("the surface's measures", [&] { return measure_fields(mesh, needs_, count_); });
+FieldMaker::FieldMaker(const TriMesh& mesh, const FieldNeeds& needs, std::shared_ptr<const TriMesh> other)
+    : needs_(needs), other_(std::move(other)), thread_([this, &mesh] {
+        auto made =
+            guarded("the surface's measures", [&] { return measure_fields(mesh, needs_, count_, other_.get()); });
         const std::scoped_lock lock(mutex_);
         made_ = std::move(made);
       }) {}

@@ -2,6 +2,7 @@
 // Measures figures of a surface in a thread of its own, while pictures of it go on.
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -12,13 +13,14 @@ namespace dubsar {
 
 class FieldMaker {
  public:
-  /// `mesh` outlives it.
-  FieldMaker(const TriMesh& mesh, const FieldNeeds& needs);
+  /// `mesh` outlives it. `other`: what a difference is from.
+  FieldMaker(const TriMesh& mesh, const FieldNeeds& needs, std::shared_ptr<const TriMesh> other = {});
   ~FieldMaker();  ///< stops the work and waits for its end, some milliseconds
   FieldMaker(const FieldMaker&) = delete;
   FieldMaker& operator=(const FieldMaker&) = delete;
 
   const FieldNeeds& needs() const noexcept { return needs_; }
+  const std::shared_ptr<const TriMesh>& other() const noexcept { return other_; }
   /// How much is done, 0..1.
   double share() const noexcept { return share_.load(std::memory_order_relaxed); }
   /// What became of it, once; nothing while it works. kTryAgain without memory.
@@ -42,6 +44,7 @@ class FieldMaker {
   };
 
   FieldNeeds needs_;
+  std::shared_ptr<const TriMesh> other_;
   std::atomic<double> share_{0.0};
   Count count_{share_};
   std::mutex mutex_;

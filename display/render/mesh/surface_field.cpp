@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/relief/curvature/integral_invariants.h"
 #include "core/relief/curvature/mesh_curvature.h"
@@ -10,7 +12,9 @@
 namespace dubsar {
 namespace {
 
-constexpr double kMostDistance = 0.5, kMostCurvature = 32.0;  // as in shaders/field.glsl
+constexpr double kMostDistance = 0.5, kMostCurvature = 32.0, kMostApart = 2.0;  // as in shaders/field.glsl
+constexpr double kDifferenceReach = 0.99;  // of kMostApart: what is farther is not the same tablet's
+constexpr std::int16_t kNotCompared = -32767;
 
 std::int16_t carried(double value, double most) {
   if (!std::isfinite(value)) return 0;
@@ -22,18 +26,19 @@ double figure(std::int16_t value, double most) { return value / 32767.0 * most; 
 
 FieldNeeds fields_needed(const Style& style) {
   return {style.map == ColorMap::kIntegral,
-          (is_field(style.map) && style.map != ColorMap::kIntegral) || style.radiance > 0};
+          (is_field(style.map) && style.map != ColorMap::kIntegral && style.map != ColorMap::kDifference) ||
+              style.radiance > 0,
+          style.map == ColorMap::kDifference};
 }
 
 FieldNeeds fields_needed(const Style& style, const OtherLook& other) {
   FieldNeeds out = fields_needed(style);
-  if (!(other.share > 0)) return out;
-  const FieldNeeds more = fields_needed(other.style);
-  return {out.integral || more.integral, out.curvature || more.curvature};
+  return other.share > 0 ? out.with(fields_needed(other.style)) : out;
 }
 
-Result<SurfaceFields> measure_fields(const TriMesh& mesh, const FieldNeeds& needs, Progress& progress) {
-  SurfaceFields out{needs, std::vector<CarriedField>(mesh.positions.size(), CarriedField{})};
+Result<SurfaceFields> measure_fields(const TriMesh& mesh, const FieldNeeds& needs, Progress& progress,
+                                     const TriMesh* other) {
+  SurfaceFields out{needs, std::vector<CarriedField>(mesh.positions.size(), CarriedField{}), {}};
   if (needs.curvature) {
     DUBSAR_ASSIGN(const MeshCurvatures k, mesh_curvatures(mesh, progress));
     for (std::size_t v = 0; v < out.values.size(); ++v) {
@@ -46,6 +51,13 @@ Result<SurfaceFields> measure_fields(const TriMesh& mesh, const FieldNeeds& need
     for (std::size_t v = 0; v < out.values.size(); ++v)
       out.values[v][0] = carried(distance_from_plane(shares[v]), kMostDistance);
   }
+  out.has.difference = needs.difference && other != nullptr;
+  if (out.has.difference) {
+    DUBSAR_ASSIGN(out.difference, difference_of(*other, mesh, kDifferenceReach * kMostApart, progress));
+    const std::vector<double> apart_mm = std::exchange(out.difference.vertex_mm, {});
+    for (std::size_t v = 0; v < out.values.size(); ++v)
+      out.values[v][3] = std::isnan(apart_mm[v]) ? kNotCompared : carried(apart_mm[v], kMostApart);
+  }
   return out;
 }
 
@@ -54,8 +66,10 @@ SurfaceFields joined(SurfaceFields made, const SurfaceFields& had) {
   for (std::size_t v = 0; v < made.values.size(); ++v) {
     if (only.integral) made.values[v][0] = had.values[v][0];
     if (only.curvature) std::copy_n(&had.values[v][1], 2, &made.values[v][1]);
+    if (only.difference) made.values[v][3] = had.values[v][3];
   }
-  made.has = {made.has.integral || only.integral, made.has.curvature || only.curvature};
+  if (only.difference) made.difference = had.difference;
+  made.has = made.has.with(only);
   return made;
 }
 
@@ -72,6 +86,8 @@ double field_figure(ColorMap map, const CarriedField& c) {
       return low == 0.0 && high == 0.0 ? 0.0 : std::atan2(low + high, high - low) * 2.0 / std::numbers::pi;
     case ColorMap::kCurvedness:
       return std::sqrt(0.5 * (low * low + high * high));
+    case ColorMap::kDifference:
+      return c[3] == kNotCompared ? std::numeric_limits<double>::quiet_NaN() : figure(c[3], kMostApart);
     default:
       return 0.0;
   }

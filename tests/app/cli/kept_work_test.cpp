@@ -129,6 +129,41 @@ TEST_F(KeptWork, WhenANewerProgramWroteThemOrTheyAreDamaged) {
   EXPECT_EQ(notes(plate_), Texts{"TWO"});
 }
 
+TEST_F(KeptWork, WhatStoodBesideStandsThereAgainAndItsAbsenceIsSaid) {
+  const fs::path other = folder_ / "other.ply";
+  write_plate(other, 30);
+  EXPECT_EQ(notes(plate_, "0.1 add_note 3,3,0 ONE\n+0.1 set_beside " + other.string() + "\n+0.2 difference\n"),
+            Texts{"ONE"});
+  const std::string kept = read_text_file(plate_.string() + ".dubsar.json").value();
+  EXPECT_NE(kept.find("\"path\": \"" + other.string() + "\""), std::string::npos) << kept;
+  EXPECT_EQ(notes(plate_, "0.1 difference 0.5\n"), Texts{"ONE"}) << "it is there to be compared with";
+  EXPECT_EQ(err_.find("other.ply"), std::string::npos) << err_;
+  fs::rename(other, folder_ / "moved.ply");
+  EXPECT_EQ(notes(plate_, "0.3 turn_left\n"), Texts{"ONE"});
+  EXPECT_NE(err_.find("other.ply"), std::string::npos) << err_;
+  EXPECT_NE(read_text_file(plate_.string() + ".dubsar.json").value().find("other.ply"), std::string::npos)
+      << "it may come back";
+}
+
+TEST_F(KeptWork, WhichWasSetAsideIsListedTakenOverAndDeletedByItsNumber) {
+  EXPECT_EQ(notes(plate_, "0.1 add_note 3,3,0 ONE\n"), Texts{"ONE"});
+  write_plate(plate_, 25);
+  EXPECT_EQ(notes(plate_, "0.1 add_note 3,3,0 TWO\n"), Texts{"TWO"});
+  const auto set_aside = [&] {
+    std::size_t count = 0;
+    for (const auto& each : fs::recursive_directory_iterator(folder_))
+      count += each.path().string().find(".orphan-") != std::string::npos ? 1 : 0;
+    return count;
+  };
+  ASSERT_GT(set_aside(), 0u);
+  EXPECT_EQ(notes(plate_, "0.1 drawer files\n+0.1 delete_work 1\n"), Texts{"TWO"});
+  EXPECT_GT(set_aside(), 0u) << "it was asked for once only";
+  EXPECT_EQ(notes(plate_, "0.1 drawer files\n+0.1 take_over 1\n+0.1 undo\n"), Texts{"TWO"});
+  EXPECT_EQ(notes(plate_, "0.1 delete_work 1\n+0.1 delete_work 1\n"), Texts{"TWO"});
+  EXPECT_EQ(set_aside(), 0u);
+  EXPECT_EQ(notes(plate_, "0.1 take_over\n"), Texts{"TWO"}) << "none is left";
+}
+
 TEST_F(KeptWork, OfTwoWindowsAtOnce) {
   const auto both = [&](const std::string& a, const std::string& b) {
     const std::vector<std::string> view{"view",    plate_.string(), "--windowed", "--size",

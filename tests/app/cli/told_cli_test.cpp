@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -66,7 +67,8 @@ std::vector<std::string> drawing_commands() {
   std::vector<std::string> styles;
   for (const std::string_view name : shading_preset_names()) styles.emplace_back(name);
   const app::CommandTable table = app::CommandTable::standard(styles);
-  const std::set<std::string> lasting{"sweep", "play", "upright", "take_over"};  // move on, or need what is not there
+  const std::set<std::string> lasting{"sweep",      "play",      "upright",   "take_over",
+                                      "set_beside", "take_away", "difference"};  // move on, or need what is not there
   std::istringstream lines(read_text_file(DUBSAR_EVERY_COMMAND).value());
   std::vector<std::string> out;
   const std::regex timed("^[+]?[0-9.]+ (.*)$");
@@ -107,6 +109,45 @@ TEST_F(ToldCommand, EachOfThemGivesTheSamePictureAndAnotherThanNone) {
   }
 }
 
+TEST_F(ToldCommand, AnotherTabletStandsBesideInWindowRenderAndFilm) {
+  const Image plain = of_render({"reset"});
+  ASSERT_EQ(run_dubsar({"phantom", file("b.h5"), "--preset", "tiny", "--seed", "5"}).exit_code, 0);
+  ASSERT_EQ(run_dubsar({"process", file("b.h5"), "-o", file("b.exa"), "-q"}).exit_code, 0);
+  Image last = plain;
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+           {}, {"side reverse"}, {"unpack 60"}, {"difference 0.5"}, {"add_note 0,0,8 um-ma", "style msii"}}) {
+    std::vector<std::string> told{"set_beside " + file("b.exa")};
+    told.insert(told.end(), more.begin(), more.end());
+    const Image expected = of_session(told), found = of_render(told);
+    EXPECT_TRUE(found.pixels == expected.pixels) << told.back();
+    EXPECT_TRUE(found.pixels != last.pixels) << told.back();
+    last = found;
+  }
+  EXPECT_TRUE(of_render({"set_beside " + file("b.exa"), "take_away"}).pixels == plain.pixels);
+  EXPECT_TRUE(of_render({"set_beside " + file("b.exa"), "undo"}).pixels == plain.pixels);
+  // A film of one picture.
+  std::ofstream(file("say.txt")) << "0 keyframe\n0 write_film " << file("film.json") << "\n";
+  ASSERT_EQ(run_dubsar({"view", file("tablet.exa"), "--offscreen", "--fps", "4", "--steps", file("say.txt")}).exit_code,
+            0);
+  const auto film = [&](const std::vector<std::string>& more) {
+    fs::remove_all(file("film"));
+    std::vector<std::string> arguments{"animate", file("film.json"), file("tablet.exa"), "-o", file("film"),
+                                       "--size",  "240x180",         "--samples",        "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramRun run = run_dubsar(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    for (const auto& each : fs::directory_iterator(file("film")))
+      if (each.path().extension() == ".png") return read_png(each.path()).value();
+    return Image();
+  };
+  const Image pair = film({"--do", "set_beside " + file("b.exa")});
+  ASSERT_EQ(pair.width, 240);
+  int right = 0;
+  for (int y = 40; y < 140; ++y) right += pair.at(180, y)[0] > 60 ? 1 : 0;
+  EXPECT_GT(right, 60) << "the other one stands in the right half";
+  EXPECT_TRUE(pair.pixels != film({}).pixels);
+}
+
 TEST_F(ToldCommand, SheetsAndReportsTakeTheLook) {
   const auto sheet = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"fatcross", file("tablet.exa"), "-o", file("sheet.png"), "--dpi",
@@ -135,6 +176,7 @@ TEST_F(ToldCommand, WhatIsNoCommandOrCannotBeDoneIsSaidBeforeAPictureIsMade) {
   };
   EXPECT_NE(refused({"--do", "fly away"}).find("--do \"fly away\": \"fly\" is no command"), std::string::npos);
   EXPECT_NE(refused({"--do", "delete_note 3"}).find("there is nothing to do it to now"), std::string::npos);
+  EXPECT_NE(refused({"--do", "difference"}).find("there is nothing to do it to now"), std::string::npos);
   EXPECT_NE(refused({"--do", "unpack 50", "--cut", "front:50"}).find("--cut"), std::string::npos);
 }
 

@@ -44,6 +44,7 @@ class FakePlace final : public Workplace {
     opened.push_back(fmt::format("step {}", step));
     return {};
   }
+  std::string next_file() const override { return next; }
   bool stop_opening() override { return std::exchange(opening, false); }
   std::string present_folder() const override { return "/"; }
   std::string today() const override { return "2026-11-27"; }
@@ -89,6 +90,7 @@ class FakePlace final : public Workplace {
     return {};
   }
   std::vector<std::string> pictures, sought, published;
+  std::string next;  ///< open file
   int plays = 0;
   std::optional<double> played_from_s;
   int display = 0, retries = 0, recentred = 0;

@@ -140,8 +140,8 @@ TEST_F(WindowLanguage, WhatPeopleReadByNamesHasTexts) {
   for (const std::string& style : styles) EXPECT_FALSE(Text::find("style." + style).empty()) << style;
   ASSERT_TRUE(use_language("de"));
   for (const OperatorRow& row : OperatorMenu::rows()) EXPECT_NE(tr_name("operator", row.words), row.words);
-  for (const ColorMap map :
-       {ColorMap::kIntegral, ColorMap::kMean, ColorMap::kGaussian, ColorMap::kShapeIndex, ColorMap::kCurvedness}) {
+  for (const ColorMap map : {ColorMap::kIntegral, ColorMap::kMean, ColorMap::kGaussian, ColorMap::kShapeIndex,
+                             ColorMap::kCurvedness, ColorMap::kDifference}) {
     Style style;
     style.map = map;
     const std::string name(field_scale(style).name);
