@@ -35,7 +35,7 @@ constexpr float kQuiet = 6.0f;  ///< steps from the contact to the sheets in cla
 using Profile = std::array<float, 2 * kReach + 1>;
 
 float trilinear(const BandDensity& density, const glm::vec3& p) {
-  constexpr std::int64_t kEdge = BrickMap<float>::kEdge;
+  constexpr std::int64_t kSide = BrickMap<float>::kEdge;
   const glm::vec3 f = glm::floor(p), t = p - f;
   const auto x = static_cast<std::int64_t>(f.x), y = static_cast<std::int64_t>(f.y), z = static_cast<std::int64_t>(f.z);
   const auto sum = [&](const auto& value) {
@@ -47,11 +47,11 @@ float trilinear(const BandDensity& density, const glm::vec3& p) {
     }
     return values;
   };
-  const auto in_one_brick = [](std::int64_t at) { return at >= 0 && at % kEdge != kEdge - 1; };
+  const auto in_one_brick = [](std::int64_t at) { return at >= 0 && at % kSide != kSide - 1; };
   if (in_one_brick(x) && in_one_brick(y) && in_one_brick(z))
-    if (const float* const brick = density.brick(x / kEdge, y / kEdge, z / kEdge)) {
-      const float* const first = brick + (z % kEdge * kEdge + y % kEdge) * kEdge + x % kEdge;
-      return sum([&](int dx, int dy, int dz) { return first[(dz * kEdge + dy) * kEdge + dx]; });
+    if (const float* const brick = density.brick(x / kSide, y / kSide, z / kSide)) {
+      const float* const first = brick + (z % kSide * kSide + y % kSide) * kSide + x % kSide;
+      return sum([&](int dx, int dy, int dz) { return first[(dz * kSide + dy) * kSide + dx]; });
     }
   return sum([&](int dx, int dy, int dz) { return density.get(x + dx, y + dy, z + dz); });
 }
