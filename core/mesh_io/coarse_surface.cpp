@@ -11,6 +11,7 @@
 
 #include "core/base/numbers/sort_unique.h"
 #include "core/mesh_io/text_scanner.h"
+#include "core/mesh_io/vertex_places.h"
 
 namespace dubsar {
 namespace {
@@ -78,8 +79,6 @@ class Clusters {
   std::vector<std::uint32_t> places_;
   std::vector<Triangle> triangles_;
 };
-
-bool is_finite_place(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 std::optional<TriMesh> of_stl(std::string_view bytes) {
   constexpr std::size_t kHeader = 84, kFacet = 50, kNormal = 12;

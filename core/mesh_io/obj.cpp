@@ -19,8 +19,6 @@ namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMaxLine = std::size_t{1} << 20;
 
-bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 /// Words that begin a line, of the format's description (Wavefront 1995) and of later versions.
 bool is_obj_word(std::string_view word) {
   static constexpr std::array kWords{
@@ -99,7 +97,7 @@ struct ObjParser {
       if (!TextScanner::parse(word, value[count++])) return broken(line, "numbers");
     if (count < 3) return broken(line, "at least 3 coordinates");
     const glm::dvec3 p(value[0], value[1], value[2]);
-    if (!finite(glm::vec3(p))) return broken(line, "finite coordinates below 3e38");
+    if (!is_finite_place(glm::vec3(p))) return broken(line, "finite coordinates below 3e38");
     places.push_back(p);
     colors.add({value + 3, static_cast<std::size_t>(count - 3)});
     return {};
@@ -146,7 +144,7 @@ struct ObjParser {
       glm::dvec3 n(0.0);
       if (!words.number(n.x) || !words.number(n.y) || !words.number(n.z)) return broken(line, "3 numbers");
       const glm::vec3 normal(n);
-      normals.push_back(finite(normal) ? normal : glm::vec3(0.0f));
+      normals.push_back(is_finite_place(normal) ? normal : glm::vec3(0.0f));
     } else if (key == "g") {
       const std::string_view name = words.word();
       const int digit = name.size() > 4 && name.starts_with("part") ? name[4] - '0' : 0;

@@ -20,8 +20,6 @@ namespace {
 constexpr std::size_t kHeaderBytes = 80, kFacetBytes = 50;
 constexpr std::string_view kMaker = "dubsar STL, units ";
 
-bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 /// What cannot be a triangle that was not counted: less than one, or zeros.
 bool is_waste(std::string_view rest) {
   return rest.size() < kFacetBytes || rest.find_first_not_of('\0') == std::string_view::npos;
@@ -53,7 +51,7 @@ Result<TriMesh> parse_binary(std::string_view bytes, Progress& progress) {
     for (std::uint32_t& id : mesh.triangles[t]) {
       glm::vec3 p;
       for (int axis = 0; axis < 3; ++axis) p[axis] = reader.little<float>();
-      if (!finite(p)) return fail(ErrorKind::kBadData, "stl: a corner of triangle {} is not finite", t);
+      if (!is_finite_place(p)) return fail(ErrorKind::kBadData, "stl: a corner of triangle {} is not finite", t);
       id = welder.id(p);
     }
     numbered += reader.little<std::uint16_t>() != 0;
@@ -137,7 +135,7 @@ Result<TriMesh> parse_ascii(std::string_view bytes, Progress& progress) {
       glm::dvec3 p(0.0);
       for (int axis = 0; axis < 3; ++axis)
         if (word = words.raw(); !TextScanner::parse(word, p[axis])) return broken(word, "a number");
-      if (!finite(glm::vec3(p))) return broken("not finite", "a finite coordinate");
+      if (!is_finite_place(glm::vec3(p))) return broken("not finite", "a finite coordinate");
       corners.push_back(p);
     }
     if (word = words.next(); word != "endloop") return broken(word, "\"endloop\"");

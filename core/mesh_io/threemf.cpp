@@ -93,13 +93,13 @@ class ModelWriter {
     text_ += fmt::format("<object id=\"{}\" type=\"model\" name=\"{}\"{}>\n<mesh>\n<vertices>\n", id,
                          markup_text(row != nullptr ? row->body_name() : "object"),
                          color_of_.empty() ? "" : fmt::format(" pid=\"{}\" pindex=\"0\"", kColours));
-    constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> local(mesh_.positions.size(), kNone);
+    constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> local(mesh_.positions.size(), kUnused);
     std::uint32_t count = 0;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (body_of(t) != body) continue;
       for (const std::uint32_t v : mesh_.triangles[t]) {
-        if (local[v] != kNone) continue;
+        if (local[v] != kUnused) continue;
         local[v] = count++;
         const glm::vec3 p(space_.exact_position(mesh_.positions[v]) - origin_);
         least_ = glm::min(least_, p);

@@ -23,6 +23,10 @@ std::int64_t open_edges(const std::vector<glm::vec3>& places, const std::vector<
 
 }  // namespace
 
+bool is_finite_place(const glm::vec3& place) noexcept {
+  return std::isfinite(place.x) && std::isfinite(place.y) && std::isfinite(place.z);
+}
+
 void set_places(TriMesh& mesh, const std::vector<glm::dvec3>& places) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const glm::dvec3& p : places) {

@@ -8,6 +8,9 @@
 
 namespace dubsar {
 
+/// No coordinate is infinite or NaN.
+bool is_finite_place(const glm::vec3& place) noexcept;
+
 /// Gives the mesh these places, in its file's units: as they are, or, where they are so far from the file's origin that
 /// float would lose the shape (survey coordinates), beside a whole number of units that goes into frame.origin_vox.
 /// Call it when the frame of the mesh is known.
