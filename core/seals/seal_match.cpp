@@ -224,7 +224,8 @@ PlacedOn refined(const SealImpression& frame, const SealImpression& impression, 
         const double gx = (east.raised - west.raised) / (2 * h), gy = (north.raised - south.raised) / (2 * h);
         const glm::dvec2 d = q - place.middle;
         const auto bends = PlacedOn::bend_terms(d);
-        std::array<double, kTerms> terms{1.0, 0.1 * d.x, 0.1 * d.y};
+        const glm::dvec2 in_frame = place.turn * d;  // so that strains are those of the frame, upside down, too
+        std::array<double, kTerms> terms{1.0, 0.1 * in_frame.x, 0.1 * in_frame.y};
         std::copy(bends.begin(), bends.end(), terms.begin() + 3);
         std::array<double, kUnknown> slope{};
         for (std::size_t k = 0; k < kTerms; ++k) {
@@ -263,7 +264,7 @@ PlacedOn refined(const SealImpression& frame, const SealImpression& impression, 
     const glm::dmat2 to_own = glm::inverse(place.turn);
     for (std::size_t k = 0; k < PlacedOn::kBends; ++k) place.bend[k] += to_own * term(3 + k);
     const glm::dvec2 at_middle = place(place.middle);
-    place.turn += 0.1 * glm::dmat2(term(1), term(2));
+    place.turn += 0.1 * glm::dmat2(term(1), term(2)) * place.turn;
     place.shift = at_middle + term(0) - place.turn * place.middle;
   }
   return place;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -68,6 +69,9 @@ struct Worn {
 
 struct Rolled {
   double phase, up, turn_deg;
+  bool weak = false;       ///< the right end was pressed by two fifths only
+  bool scratched = false;  ///< three furrows across
+  double clay_mm = 0.0;    ///< waves of 11 mm of the clay itself
 };
 constexpr Rolled kRolled[] = {{5.0, 0.0, 0.0}, {17.0, 0.5, 1.0}, {31.0, -0.4, -0.8}};
 
@@ -89,7 +93,12 @@ HeightMap rolled(const DrawnSeal& seal, const Rolled& how, const Worn& worn, uns
     for (int x = 0; x < map.width; ++x) {
       const glm::dvec2 p = kStep * glm::dvec2(x, y), q = on_seal(how, p);
       const double inside = q.y > 0.0 && q.y < kSealHigh ? seal(q.x, q.y) : 0.0;
-      map.mm.push_back(static_cast<float>(inside * worn.kept(p.x, p.y) + noise(random)));
+      double mm = inside * worn.kept(p.x, p.y) * (how.weak ? 1.0 - 0.6 * p.x / kLong : 1.0);
+      mm += how.clay_mm * std::sin(6.283185 * (p.x + 0.6 * p.y) / 11.0 + how.phase);
+      if (how.scratched)
+        for (const double at : {9.0, 22.0, 37.0})
+          if (std::abs(p.x + 0.3 * p.y - at) < 0.35) mm -= 0.4;
+      map.mm.push_back(static_cast<float>(mm + noise(random)));
     }
   return map;
 }
@@ -126,6 +135,40 @@ TEST(SealAverage, OfThreeWornImpressionsIsNearerToTheSealThanTheBestOfThem) {
     for (const float weight : average.relief.shown) shown += weight > 0.3f ? 1 : 0;
     EXPECT_GT(static_cast<double>(shown) / static_cast<double>(average.relief.shown.size()), 0.95);
   }
+}
+
+/// As if somebody had named the ends of the strip the other way round.
+HeightMap upside_down(HeightMap map) {
+  std::reverse(map.mm.begin(), map.mm.end());
+  return map;
+}
+
+double times_as_near(unsigned seed, const std::array<Rolled, 3>& how, bool last_upside) {
+  const DrawnSeal seal(seed);
+  std::vector<SealImpression> impressions;
+  double best = 1e9;
+  for (unsigned k = 0; k < 3; ++k) {
+    const HeightMap map = rolled(seal, how[k], Worn(100 * seed + k), seed + k);
+    best = std::min(best, error_of(seal, level_impression(map), glm::dvec2(0.0), how[k]));
+    impressions.push_back(level_impression(last_upside && k == 2 ? upside_down(map) : map));
+  }
+  const SealAverage average = average_seal(impressions, {.turn_mm = kSealTurn});
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(average.used[k], 1) << k << " of seed " << seed;
+  return best / error_of(seal, average.relief, average.least_mm, how[0]);
+}
+
+TEST(SealAverage, BearsAnImpressionUpsideDownWeakPressingScratchesAndUnevenClay) {
+  const std::array<Rolled, 3> plain{kRolled[0], kRolled[1], kRolled[2]};
+  std::array<Rolled, 3> weak = plain, scratched = plain, uneven = plain;
+  for (std::size_t k = 0; k < 3; ++k) {
+    weak[k].weak = k > 0;
+    scratched[k].scratched = true;
+    uneven[k].clay_mm = 0.15;
+  }
+  EXPECT_GT(times_as_near(31, plain, true), 1.5);
+  EXPECT_GT(times_as_near(32, weak, false), 1.3);
+  EXPECT_GT(times_as_near(33, scratched, false), 1.3);
+  EXPECT_GT(times_as_near(34, uneven, false), 1.5);
 }
 
 TEST(SealAverage, OfAnotherSealIsLeftOut) {
