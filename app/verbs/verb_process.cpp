@@ -197,9 +197,9 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
         "; allow more with --memory, take --detail half where it is not taken yet, a part of the scan with --crop, or "
         "fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
-  DUBSAR_TRY(write_product(options.out, result, progress));
-  result.model = {};  // it is in the file
   DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(result.mesh, result.report.mesh.watertight()));
+  result.mesh = {};  // writing takes the most memory where little is glued
+  DUBSAR_TRY(write_product(options.out, result, progress));
   VerbResult out;
   out.json = report_json(result.report, p);
   out.json["output"] = options.out;
