@@ -17,9 +17,9 @@ namespace {
 constexpr double kFindLeastDepth = 0.35;  // of the usual depth, of the closed surface
 constexpr double kFindCost = 0.0012;      // what a wedge has to explain, at most: a fifth of what a usual one does
 // Noise of clay that nobody wrote on looks like small wedges that fit badly and would rather be broader: on phantoms
-// misfits of .05 to .06 and breadths of 1.86 to 1.92 usual ones, of what is written .02 and .99 to 1.01 (seven
+// misfits of .045 to .06 and breadths of 1.77 to 1.92 usual ones, of what is written .02 and .99 to 1.01 (seven
 // voxels deep), .034 and 1.76 (three); on S264's coarse mesh a breadth of 1.4.
-constexpr double kNoiseMisfit = 0.045, kNoiseBroad = 1.6;
+constexpr double kNoiseMisfit = 0.04, kNoiseBroad = 1.6;
 constexpr int kFindRounds = 3;
 constexpr int kFindVotes = 3;  // rounds in which the tablet's own directions count
 

@@ -17,8 +17,8 @@ constexpr double kSplitApart = 0.4;   // radians between two ways that the first
 constexpr std::size_t kSplitFirsts = 6;
 constexpr int kSplitTurns = 3;
 // A pit that is less like its planes than others on the tablet are, by so much, is asked for two heads of any
-// direction; they have to explain a fifteenth of what a usual wedge does more than one. On ten phantoms 15 of the 18
-// pits like that had two.
+// direction; they have to explain a fifteenth of what a usual wedge does more than one. On ten phantoms 12 of the 16
+// pits like that lay where a wedge had been missed.
 constexpr double kSplitUnlike = 1.5, kSplitLess = 1.0 / 3.0;
 
 }  // namespace
