@@ -133,6 +133,7 @@ Result<TiffPage> TiffFile::describe() {
   page.offset = TIFFCurrentDirOffset(tiff);
   page.width = width;
   page.height = height;
+  page.depth = std::max<std::int64_t>(1, field<std::uint32_t>(tiff, TIFFTAG_IMAGEDEPTH, 1));
   page.bits = field<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE, 1);
   page.channels = field<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
   page.palette = field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_PALETTE;

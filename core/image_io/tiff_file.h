@@ -32,8 +32,9 @@ struct TiffPage {
   enum class Sample { kUnsigned, kSigned, kFloat, kOther };
   std::uint64_t offset = 0;  ///< of its directory, for TiffFile::select()
   std::int64_t width = 0, height = 0;
-  int bits = 0;      ///< per sample
-  int channels = 1;  ///< samples per pixel
+  std::int64_t depth = 1;  ///< pictures in this page, one behind the other (ImageDepth, tag 32997)
+  int bits = 0;            ///< per sample
+  int channels = 1;        ///< samples per pixel
   Sample sample = Sample::kUnsigned;
   bool palette = false;     ///< colours by table
   bool reduced = false;     ///< a thumbnail or a coarser level of another page

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace dubsar {
 namespace {
@@ -14,7 +15,11 @@ constexpr double kLeastOfBorder = 0.01;                                  ///< of
 constexpr int kRimFrom = 2, kRimTo = 3, kBehindFrom = 5, kBehindTo = 8;  ///< steps from what is outside
 constexpr std::uint32_t kNaNBits = 0x7FC00000u;
 
-bool same(float value, float wanted) { return std::isfinite(wanted) ? value == wanted : !std::isfinite(value); }
+bool same(float value, std::span<const float> wanted) {
+  for (const float one : wanted)
+    if (std::isfinite(one) ? value == one : !std::isfinite(value)) return true;
+  return false;
+}
 
 struct Point {
   std::int64_t x, y;
@@ -88,23 +93,36 @@ std::vector<float> SliceBorder::values() const {
   return found;
 }
 
-BorderLook SliceBorder::look(std::optional<float> value) {
+std::vector<float> SliceBorder::whole_values() const {
+  std::set<float> found;
+  bool whole = true;
+  each_at_border([&](std::int64_t at) {
+    const float value = values_[static_cast<std::size_t>(at)];
+    if (!std::isfinite(value) || !whole) return;
+    whole = value == std::round(value);
+    found.insert(value);
+  });
+  return whole ? std::vector<float>(found.begin(), found.end()) : std::vector<float>{};
+}
+
+BorderLook SliceBorder::look(std::span<const float> values) {
+  const bool any = !values.empty();
   BorderLook result;
   result.pixels = width_ * height_;
   std::fill(steps_.begin(), steps_.end(), kUnknown);
   std::vector<std::int64_t> front;
   each_at_border([&](std::int64_t at) {
     std::uint8_t& step = steps_[static_cast<std::size_t>(at)];
-    if (step != kUnknown || (value && !same(values_[static_cast<std::size_t>(at)], *value))) return;
-    step = value ? kOutside : std::uint8_t{1};
+    if (step != kUnknown || (any && !same(values_[static_cast<std::size_t>(at)], values))) return;
+    step = any ? kOutside : std::uint8_t{1};
     front.push_back(at);
   });
   int reached = 1;
-  if (value) {
+  if (any) {
     for (std::size_t i = 0; i < front.size(); ++i)
       each_beside(front[i], [&](std::int64_t next) {
         if (steps_[static_cast<std::size_t>(next)] != kUnknown ||
-            !same(values_[static_cast<std::size_t>(next)], *value))
+            !same(values_[static_cast<std::size_t>(next)], values))
           return;
         steps_[static_cast<std::size_t>(next)] = kOutside;
         front.push_back(next);
@@ -130,7 +148,7 @@ BorderLook SliceBorder::look(std::optional<float> value) {
 std::optional<float> SliceBorder::padding() {
   std::optional<float> found;
   for (const float value : values()) {
-    const BorderLook seen = look(value);
+    const BorderLook seen = look(std::span(&value, 1));
     if (!seen.blank() && !(seen.beside() && seen.convex())) continue;
     if (found) return std::nullopt;
     found = value;

@@ -33,9 +33,11 @@ class SliceBorder {
 
   /// Values that a hundredth of the border has.
   std::vector<float> values() const;
+  /// All finite whole numbers of the border, ascending, where it has no others.
+  std::vector<float> whole_values() const;
 
-  /// What is joined to the border by pixels of this value; without a value the border itself.
-  BorderLook look(std::optional<float> value);
+  /// What is joined to the border by pixels of these values; without values the border itself.
+  BorderLook look(std::span<const float> values);
 
   /// The only value of values() beside which the region is convex, or that fills the slice; nothing where two are.
   std::optional<float> padding();

@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "core/volume/slice_border.h"
+#include "core/volume/uneven_pads.h"
 
 namespace dubsar {
 namespace {
@@ -20,6 +22,7 @@ constexpr std::int64_t kLeastSlices = 3, kMostSlices = 7, kSmallScan = 50'000'00
 constexpr double kLevel = 0.15, kDark = 0.25;  ///< of the contrast
 constexpr double kLeastSeparability = 0.75;    ///< a single Gaussian has .64
 constexpr double kLeastDark = 0.05;            ///< share of what is measured
+constexpr double kApart = 0.05;                ///< of the contrast, from air to a padding of several values
 
 float quantile(std::vector<float>& values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -110,7 +113,7 @@ struct OwnPadding {
     const std::optional<float> value = slice.padding();
     everywhere = everywhere && value && std::isfinite(*value);
     if (!everywhere) return;
-    const BorderLook look = slice.look(value);
+    const BorderLook look = slice.look(std::span(&*value, 1));
     if (look.blank())
       blank += look.pixels;
     else
@@ -128,6 +131,64 @@ std::vector<std::int64_t> slices_to_look_at(const SlabSource& scan) {
   std::vector<std::int64_t> slices;
   for (std::int64_t i = 0; i < count; ++i) slices.push_back(count == 1 ? 0 : i * (d.z - 1) / (count - 1));
   return slices;
+}
+
+/// A padding of more values than one: found where it is a padding as a whole, and no values less than it.
+struct WiderPad {
+  std::vector<float> values;
+  Found found;
+  bool good() { return found.looked_at > 0 && found.beside() && found.convex() && begins_with_air(found) && apart(); }
+  /// From the air that begins behind it: the noise of air that has few grey values is no padding.
+  bool apart() {
+    if (found.rim.empty() || found.inner.empty()) return false;
+    const float low = quantile(found.rim, 0.02), high = quantile(found.rim, 0.98);
+    const double contrast = static_cast<double>(quantile(found.inner, 0.98) - quantile(found.inner, 0.02));
+    const double least = std::max(0.5 * static_cast<double>(high - low), kApart * contrast);
+    return std::all_of(values.begin(), values.end(), [&](float v) {
+      return static_cast<double>(low) - static_cast<double>(v) > least ||
+             static_cast<double>(v) - static_cast<double>(high) > least;
+    });
+  }
+};
+
+/// Of those that hold all of `known` the widest; the slices are read again where there is one to be looked for.
+Result<std::optional<WiderPad>> wider_pad(SlabSource& scan, const BorderValues& border,
+                                          const std::vector<float>& known) {
+  const Dims d = scan.dims();
+  std::vector<float> pixels(static_cast<std::size_t>(d.slice()));
+  const auto look_for = [&](const std::vector<std::vector<float>>& sets) -> Result<std::optional<WiderPad>> {
+    std::vector<WiderPad> pads;
+    for (const std::vector<float>& values : sets) pads.push_back({values, {}});
+    for (const std::int64_t z : pads.empty() ? std::vector<std::int64_t>{} : slices_to_look_at(scan)) {
+      DUBSAR_TRY(scan.read(z, z + 1, pixels));
+      SliceBorder slice(pixels, d.x, d.y);
+      for (WiderPad& pad : pads) {
+        const BorderLook look = slice.look(pad.values);
+        // What fills a slice without data counts, too.
+        if (look.blank()) pad.found.outside += look.pixels, pad.found.looked_at += look.pixels;
+        pad.found.add(look);
+      }
+    }
+    std::optional<WiderPad> best;
+    for (WiderPad& pad : pads)
+      if (pad.good() && (!best || pad.found.outside > best->found.outside)) best = std::move(pad);
+    return best;
+  };
+  const std::vector<std::vector<float>> runs = pad_runs(border);
+  std::vector<std::vector<float>> wide;
+  for (const std::vector<float>& run : runs)
+    if (run.size() > 1) wide.push_back(run);
+  const std::set<float> one_by_one(known.begin(), known.end());
+  for (std::vector<float>& run : wide) {
+    std::set<float> with(one_by_one);
+    with.insert(run.begin(), run.end());
+    run.assign(with.begin(), with.end());
+  }
+  DUBSAR_ASSIGN(std::optional<WiderPad> wider, look_for(wide));
+  std::set<float> found(one_by_one);
+  if (wider) found.insert(wider->values.begin(), wider->values.end());
+  DUBSAR_ASSIGN(std::optional<WiderPad> joined, look_for(pad_unions(runs, found)));
+  return joined ? std::move(joined) : std::move(wider);
 }
 
 }  // namespace
@@ -162,7 +223,13 @@ float fill_value(float value) noexcept {
 
 std::string describe(const Unmeasured& unmeasured) {
   std::string what;
-  for (const float value : unmeasured.outside) what += fmt::format("{}{:g}", what.empty() ? "" : ", ", value);
+  for (std::size_t i = 0, last = 0; i < unmeasured.outside.size(); i = last + 1) {
+    for (last = i;
+         last + 1 < unmeasured.outside.size() && unmeasured.outside[last + 1] == unmeasured.outside[last] + 1;)
+      ++last;
+    what += fmt::format("{}{:g}", what.empty() ? "" : ", ", unmeasured.outside[i]);
+    if (last > i) what += fmt::format(" to {:g}", unmeasured.outside[last]);
+  }
   if (unmeasured.each_slice)
     what =
         fmt::format("another value in each slice, {:g} to {:g}", unmeasured.outside.front(), unmeasured.outside.back());
@@ -190,19 +257,23 @@ Result<Unmeasured> find_unmeasured(SlabSource& scan, const IgnoredValues& option
     return !std::isfinite(v) ||
            std::any_of(options.values.begin(), options.values.end(), [&](float other) { return v == other; });
   };
+  const bool search = options.search && options.values.empty();
+  BorderValues at_border;
   for (const std::int64_t z : slices_to_look_at(scan)) {
     DUBSAR_TRY(scan.read(z, z + 1, values));
     SliceBorder slice(values, d.x, d.y);
     bool blank = false;
-    const bool search = options.search && options.values.empty();
     if (search) own.add(slice);
     for (const float value : slice.values()) {
       if (!is_ignored(value) && !search) continue;
-      const BorderLook look = slice.look(value);
+      const BorderLook look = slice.look(std::span(&value, 1));
       blank = blank || look.blank();
       candidates[std::bit_cast<std::uint32_t>(value)].add(look);
     }
-    if (!blank) bordered.add(slice.look(std::nullopt));
+    for (const float value : search ? slice.values() : std::vector<float>{})
+      if (std::isfinite(value)) at_border.frequent.insert(value);
+    for (const float value : search ? slice.whole_values() : std::vector<float>{}) at_border.whole.insert(value);
+    if (!blank) bordered.add(slice.look({}));
     const std::size_t every = values.size() / kMostSliceSamples + 1;
     for (std::size_t at = 0; at < values.size(); ++at) {
       ignored += is_ignored(values[at]) ? 1 : 0;
@@ -234,6 +305,15 @@ Result<Unmeasured> find_unmeasured(SlabSource& scan, const IgnoredValues& option
     if (is_ignored(value)) continue;
     result.outside.push_back(value);
     outside += found.outside;
+  }
+  if (search && !result.each_slice) {
+    DUBSAR_ASSIGN(const std::optional<WiderPad> wider, wider_pad(scan, at_border, result.outside));
+    if (wider) {
+      result.outside = wider->values;
+      outside = wider->found.outside;
+      rim = wider->found.rim;
+      rim.insert(rim.end(), wider->found.behind.begin(), wider->found.behind.end());
+    }
   }
   if (measured.empty())
     return fail(ErrorKind::kBadData,

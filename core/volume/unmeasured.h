@@ -44,10 +44,11 @@ std::string describe(const Unmeasured& unmeasured);
 
 /// Looks for a value outside the field of view in three to seven whole slices, the first and the last among them: an
 /// exact value at their border that is constant up to a convex region (a circle, a rectangle, in each slice its own),
-/// or fills slices (one for all, or another one in each slice), where what begins behind it is air: level there, and
-/// the darker of what the region holds. So neither air that is clipped, nor a background that somebody masked, nor that
-/// of a scan without noise is taken for it. `fill` is found in any case. Memory: one slice and some bytes a pixel.
-/// Errors: those of the source, kBadData where no voxel of these slices is a measurement.
+/// or fills slices (one for all, or another one in each slice; up to 32 whole numbers beside each other or two to six
+/// such paddings that meet, where these are far from the air), where what begins behind it is air: level there, and the
+/// darker of what the region holds. So neither air that is clipped, nor a background that somebody masked, nor that of
+/// a scan without noise is taken for it. `fill` is found in any case. Memory: one slice and some bytes a pixel. Errors:
+/// those of the source, kBadData where no voxel of these slices is a measurement.
 Result<Unmeasured> find_unmeasured(SlabSource& scan, const IgnoredValues& options);
 
 }  // namespace dubsar

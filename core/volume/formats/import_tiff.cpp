@@ -225,6 +225,11 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
           parse_tiff_description(page.texts.description).images > 1)
         return fail(ErrorKind::kBadData, "import_tiff: {} holds several series of pictures, expected one volume",
                     path.string());
+      if (page.depth > 1 && (files.size() > 1 || pages.size() > 1 || page.data_offset < 0))
+        return fail(ErrorKind::kBadData,
+                    "import_tiff: {} holds {} slices in one page (ImageDepth, tag 32997), and these packed, in tiles "
+                    "or beside other pages; expected a page a slice, save it so",
+                    path.string(), page.depth);
       // Some programs state it in the first page alone.
       const int oriented = page.orientation > 0 ? page.orientation : std::max(1, pages.front().orientation);
       if (oriented != std::max(1, first->orientation))
@@ -243,8 +248,9 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   }
   if (!first) return fail(ErrorKind::kBadData, "import_tiff: {} holds thumbnails only", options.path.string());
   const ScalarType type = *type_of(*first);
-  // ImageJ above 4 GiB and tifffile where it was told to write one page and the rest of the slices behind it.
-  const std::int64_t behind = slices.size() == 1 && first->data_offset >= 0 ? said.images : 1;
+  // ImageJ above 4 GiB and tifffile where it was told to write one page and the rest of the slices behind it; pages
+  // that are deep themselves.
+  const std::int64_t behind = slices.size() == 1 && first->data_offset >= 0 ? std::max(said.images, first->depth) : 1;
   const std::int64_t depth = std::max(behind, static_cast<std::int64_t>(slices.size()));
   if (depth < 2)
     return fail(ErrorKind::kBadData,

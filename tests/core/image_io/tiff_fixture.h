@@ -19,6 +19,7 @@ struct TiffFixture {
   int orientation = 0;         ///< tag 274; 0: not there
   bool oriented_once = false;  ///< in the first page only
   std::string trailing = {};   ///< bytes right behind the pixels of the first page
+  int depth = 0;               ///< ImageDepth, tag 32997; 0: not there
 
   /// `pages`: samples of each page, row by row, as bit patterns.
   std::string bytes(const std::vector<std::vector<std::uint64_t>>& pages) const {
@@ -60,6 +61,7 @@ struct TiffFixture {
         entries.push_back({296, 3, 1, unit});
       }
       entries.push_back({339, 3, 1, static_cast<std::uint64_t>(sample_format)});
+      if (depth > 0) entries.push_back({32997, 4, 1, static_cast<std::uint64_t>(depth)});
       put(out, entries.size(), big_tiff ? 8 : 2);
       for (const Entry& entry : entries) {
         put(out, static_cast<std::uint64_t>(entry.tag), 2);

@@ -226,6 +226,21 @@ TEST_F(ImportFormats, TiffPagesFoldersAndPatternsAreStacks) {
   EXPECT_EQ(open("slices/t*.tif").error().kind, ErrorKind::kNoInput);
 }
 
+TEST_F(ImportFormats, ATiffPageMayHoldAVolume) {
+  const auto pages = pages_of(0);
+  for (const bool big_endian : {false, true}) {
+    TiffFixture fixture{.width = 6, .height = 5, .bits = 16, .big_endian = big_endian, .depth = 4};
+    for (std::size_t page = 1; page < pages.size(); ++page)
+      for (const std::uint64_t sample : pages[page])
+        for (int k = 0; k < 2; ++k) fixture.trailing += static_cast<char>(sample >> 8 * (big_endian ? 1 - k : k));
+    write_bytes(in("deep.tif"), fixture.bytes({pages[0]}));
+    expect_ramp(open("deep.tif"), 0, "deep page");
+    // Beside other pages nothing says what belongs together.
+    write_bytes(in("deep.tif"), fixture.bytes({pages[0], pages[1]}));
+    expect_refused("deep.tif", {"4 slices in one page (ImageDepth, tag 32997)"});
+  }
+}
+
 TEST_F(ImportFormats, FloatAndSignedTiffSamplesAreRead) {
   std::vector<std::vector<std::uint64_t>> pages = pages_of(-7);
   TiffFixture fixture{.width = 6, .height = 5, .bits = 16, .sample_format = 2};

@@ -136,6 +136,54 @@ TEST(Unmeasured, AnotherPadInEachSliceIsFoundAndFilled) {
     }
 }
 
+/// What a picture that was packed with a loss leaves of a padding of 0, and paddings that meet in one slice.
+TEST(Unmeasured, PaddingsOfSeveralValuesAreFoundWhole) {
+  struct Case {
+    const char* name;
+    std::function<float(const Place&, float noise)> pad;
+    std::vector<float> values;
+    bool bytes = false;
+  };
+  const auto left = [](const Place& p) { return p.x < 28; };
+  const Case cases[] = {
+      {"0 to 2", [](const Place&, float n) { return n < -0.4f  ? 0.0f
+                                                    : n < 0.4f ? 1.0f
+                                                               : 2.0f; }, {0, 1, 2}},
+      {"1 is rare", [](const Place&, float n) { return n < 2.0f ? 0.0f : 1.0f; }, {0, 1}},
+      {"65534 and 65535", [](const Place&, float n) { return n < 0.0f ? 65534.0f : 65535.0f; }, {65534, 65535}},
+      {"0 to 2 in bytes",
+       [](const Place&, float n) { return n < -0.4f  ? 0.0f
+                                          : n < 0.4f ? 1.0f
+                                                     : 2.0f; },
+       {0, 1, 2},
+       true},
+      {"two that meet", [&](const Place& p, float) { return left(p) ? 0.0f : 60000.0f; }, {0, 60000}},
+      {"two that meet in bytes", [&](const Place& p, float) { return left(p) ? 0.0f : 255.0f; }, {0, 255}, true},
+      {"a frame of two", [](const Place& p, float) { return p.y < 4 || p.y >= 44 ? 0.0f : 3.0f; }, {0, 3}},
+  };
+  for (const Case& c : cases) {
+    const auto outside = [&](const Place& p) {
+      return std::string(c.name) == "a frame of two" ? p.y < 4 || p.y >= 44 || p.x < 5 || p.x >= 51
+                                                     : p.from_axis() > 23.0;
+    };
+    const auto measured = [&](const Place& p, float n) {
+      return std::round(c.bytes ? ball(p, n) / 8.0f + 20.0f : 10.0f * ball(p, n));
+    };
+    const Volume<float> padded =
+        volume_of([&](const Place& p, float n) { return outside(p) ? c.pad(p, n) : measured(p, n); });
+    VolumeSource source(padded);
+    const auto found = find_unmeasured(source, {});
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->outside, c.values) << c.name;
+    EXPECT_TRUE(found->at_rim) << c.name;
+  }
+  const Volume<float> uneven = volume_of([&](const Place& p, float n) {
+    return p.from_axis() > 23.0 ? std::round(1.0f + std::clamp(n, -1.0f, 1.0f)) : std::round(10.0f * ball(p, n));
+  });
+  VolumeSource source(uneven);
+  EXPECT_THAT(describe(*find_unmeasured(source, {})), HasSubstr("outside the field of view (0 to 2)"));
+}
+
 TEST(Unmeasured, WhatIsOutsideCountsAsAirAndTheRestIsAsItWas) {
   for (const Layout& layout : kLayouts)
     for (const float pad : {-1.0f, kNaN}) {
