@@ -22,7 +22,7 @@ joined() { convert -background white -gravity center "${@:2}" +append -resize 15
 "$program" phantom scan.h5 --size 320x192x304 --seed 101 --wedge-depth 7 --truth truth.h5 --json phantom.json -q >/dev/null
 "$program" process scan.h5 -o tablet.exa -q --progress none >/dev/null
 voxel=$(python3 -c 'import json; print(json.load(open("phantom.json"))["voxel_size_mm"])')
-python3 "$scripts/phantom_truth_wedges.py" truth.h5 "$voxel" truth.json
+"$scripts/phantom_truth_wedges.py" truth.h5 "$voxel" truth.json
 "$program" render tablet.exa -o light.png --partition tablet --style raking --light 315,25 --dpi $dpi --ground white -q >/dev/null
 drawn tablet.exa --found --side obverse --title "found" -o found
 drawn tablet.exa --work truth.json --side obverse --title "pressed" -o pressed
