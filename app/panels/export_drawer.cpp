@@ -10,17 +10,23 @@ namespace {
 
 constexpr float kFigurePx = 84.0f, kExportBarPx = 170.0f;
 
-void draw_words_row(const PanelContext& context, Text heading, const char* family, const std::string& now,
-                    std::initializer_list<const char*> words) {
+template <class Label>
+std::vector<std::pair<std::string, std::string>> labelled(std::initializer_list<const char*> words,
+                                                          const Label& label) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const char* const word : words) out.emplace_back(word, label(word));
+  return out;
+}
+
+/// Words of which one is chosen: "export_as WHAT WORD".
+void draw_words_row(const PanelContext& context, Text heading, const char* what, const std::string& now,
+                    const std::vector<std::pair<std::string, std::string>>& words_and_labels) {
   say_dim(tr(heading));
   bool first = true;
-  for (const char* const word : words) {
-    const std::string label = tr_name(family, word);
+  for (const auto& [word, label] : words_and_labels) {
     if (!first) next_in_row(button_width(label));
     first = false;
-    button(context, label,
-           fmt::format("export_as {} {}", family == std::string_view("export_hand") ? "hand" : "ground", word),
-           now == word);
+    button(context, label, fmt::format("export_as {} {}", what, word), now == word);
   }
 }
 
@@ -38,11 +44,15 @@ void draw_export(const PanelContext& context) {
   const ExportChoice& choice = context.state.ui.choosing.publishing;
   draw_number(context, tr("export.width"), "width", choice.width_mm, 5.0f, 2000.0f);
   draw_number(context, tr("export.dpi"), "dpi", choice.dpi, 50.0f, 4800.0f);
-  draw_words_row(context, "export.ground", "export_ground", choice.ground, {"white", "grey", "black", "none"});
+  draw_words_row(
+      context, "export.ground", "ground", choice.ground,
+      labelled({"white", "grey", "black", "none"}, [](const char* word) { return tr_name("export_ground", word); }));
   button(context, tr("export.scale_bar"), "export_as scale-bar", choice.scale_bar);
   next_in_row(button_width(tr("export.labels")));
   button(context, tr("export.labels"), "export_as labels", choice.labels);
-  draw_words_row(context, "export.hand", "export_hand", choice.hand, {"outlined", "filled", "weighted"});
+  draw_words_row(
+      context, "export.hand", "hand", choice.hand,
+      labelled({"outlined", "filled", "weighted"}, [](const char* word) { return tr_name("export_hand", word); }));
   ImGui::Separator();
   if (const auto& job = context.state.exporting) {
     say_dim(job->name);
