@@ -57,6 +57,12 @@ Result<MeshOptions> mesh_options(const SurfaceModel& model, const std::string& w
 
 void append(TriMesh& to, const TriMesh& from) {
   const auto base = static_cast<std::uint32_t>(to.positions.size());
+  if (!to.triangle_inferred.empty() || !from.triangle_inferred.empty()) {  // a part without marks is measured
+    to.triangle_inferred.resize(to.triangles.size(), 0);
+    to.triangle_inferred.insert(to.triangle_inferred.end(), from.triangle_inferred.begin(),
+                                from.triangle_inferred.end());
+    to.triangle_inferred.resize(to.triangles.size() + from.triangles.size(), 0);
+  }
   for (Triangle t : from.triangles) to.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   const auto& labels = from.triangle_partition;
   to.triangle_partition.insert(to.triangle_partition.end(), labels.begin(), labels.end());
