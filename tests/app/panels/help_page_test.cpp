@@ -54,8 +54,8 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "This window", "P  L  T  M  Shift+N  Shift+G  C  Shift+S  Shift+K  Shift+E"),
             "panel: Parts, Light, Style, Measures, Notes, Wedges, Cuts, Slices, Film, Export");
   EXPECT_EQ(find(page, "Light", "Alt+1 to Alt+8"), "raking light from one of eight directions");
-  EXPECT_EQ(find(page, "Measures", "V  D  A  W  F  N  I  J  Shift+W  Shift+A  Shift+M"),
-            "what a click does: Turn, Distance, Angle, Depth, Profile, Note, Line, Slice, Wedge, New wedge, Move it");
+  EXPECT_EQ(find(page, "Measures", "V  D  A  W  F  N  I  J  Shift+W  Shift+A  Shift+M"), "what a click does")
+      << "a list of more than 72 letters is for the palette";
   EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
   EXPECT_EQ(find(page, "Hands", "grab and pull"), "zoom");
