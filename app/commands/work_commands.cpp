@@ -110,7 +110,7 @@ Command delete_work() {
   Command out{"delete_work", kFileGroup, {}, "arg.delete_work"};
   out.values = {"1", "2", "3", "none"};
   out.run = [name = out.name](Editor& editor, const std::string& number) -> Result<void> {
-    std::size_t& asked = editor.ui().deleting;
+    std::size_t& asked = editor.ui().choosing.deleting;
     if (number == "none") {
       asked = 0;
       return {};

@@ -102,14 +102,19 @@ struct TabletEdition {
   friend bool operator==(const TabletEdition&, const TabletEdition&) = default;
 };
 
-struct Document {
+/// What stands around the surface.
+struct Surroundings {
+  Companion companion;
+  friend bool operator==(const Surroundings&, const Surroundings&) = default;
+};
+
+struct Document : Surroundings {
   SourceFile source;
   std::vector<Part> parts;
   double unpack = 0.0;   ///< how far the envelope is lifted from the tablet: 0 not, 1 away
   CameraPose home, now;  ///< home is the obverse, upright
   LightPlace home_light, light;
   StyleChoice style;
-  Companion companion;
   std::vector<Cut> clips;
   double fog = 0.0;  ///< 0..1: how much the far side fades
   std::vector<Measure> measures;

@@ -38,11 +38,12 @@ struct Pointing {
   friend bool operator==(const Pointing&, const Pointing&) = default;
 };
 
-/// The dialogue that opens files, and how others are written.
+/// The dialogue that opens files, what is asked about others, and how they are written.
 struct Choosing {
   bool open = false;
-  bool beside = false;   ///< for what stands beside the present one
-  std::string folder{};  ///< that is looked into; empty: the one of the present file
+  bool beside = false;       ///< for what stands beside the present one
+  std::string folder{};      ///< that is looked into; empty: the one of the present file
+  std::size_t deleting = 0;  ///< work set aside that goes when it is said again, counted from 1; 0: none
   ExportChoice publishing{};
   friend bool operator==(const Choosing&, const Choosing&) = default;
 };
@@ -63,7 +64,6 @@ struct UiState {
   Pointing pointing{};
   std::optional<Document> compared;  ///< a state that stands beside the present one
   bool linked = true;                ///< both are seen from the same place, by the same light
-  std::size_t deleting = 0;          ///< work set aside that is to be deleted, counted from 1, once it is said again
   std::size_t note = 0;              ///< which is open, counted from 1; 0: none
   friend bool operator==(const UiState&, const UiState&) = default;
 };

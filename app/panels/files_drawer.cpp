@@ -36,7 +36,7 @@ void draw_other(const PanelContext& context, const OtherWorkRow& other, std::siz
   button(context, tr("files.take_over"), "take_over" + which, false, !other.taken);
   if (other.day.empty()) return ImGui::PopID();
   next_in_row(button_width(tr("files.delete")));
-  const bool asked = context.state.ui.deleting == number;
+  const bool asked = context.state.ui.choosing.deleting == number;
   button(context, asked ? tr("files.delete_asked") : tr("files.delete"), "delete_work" + which, asked);
   if (asked) {
     next_in_row(button_width(tr("files.keep")));

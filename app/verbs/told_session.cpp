@@ -56,7 +56,7 @@ Result<ToldSession> tell_session(const TriMesh& mesh, ViewOptions view, const st
                                  ToldPart wanted, Progress& progress) {
   view.window.reset();
   view.inputs.clear();
-  view.read_beside = beside_reader(view, {.upright = view.work.upright});
+  view.sources.beside = beside_reader(view, {.upright = view.work.upright});
   view.steps = steps_of(commands);
   view.around.notices = view.around.panels = false;
   view.time = {};

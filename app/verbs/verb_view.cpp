@@ -248,7 +248,7 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
     DUBSAR_ASSIGN(const TriMesh mesh, load_mesh(asked, progress));
     return write_tour(options.made.tour, mesh, view);
   }
-  view.read_beside = beside_reader(view, file_reading(options, scan));
+  view.sources.beside = beside_reader(view, file_reading(options, scan));
   FileLoader loader(surface_reader(view, file_reading(options, scan)), live ? recent_list() : std::filesystem::path());
   OpenedSurface first;
   if (live) {  // the window is there before what it shows

@@ -65,9 +65,11 @@ struct SessionWords {
   bool notices = true;  ///< a line for some seconds: how to get help and leave, which display this is now
 };
 
+/// Where a session gets inputs and other surfaces from.
 struct SessionSources {
   std::filesystem::path model_folder{};  ///< networks of the webcam source; empty: none
   MakeInput make = make_input;
+  ReadSurface beside{};  ///< reads what documents set beside their surface; none: nothing
 };
 
 struct ViewOptions {
@@ -87,7 +89,6 @@ struct ViewOptions {
       steps{};                      ///< said at their times, from the first picture on; one that fails ends the session
   std::vector<Command> commands{};  ///< in place of those that change what is looked at
   SessionWords around{};
-  ReadSurface read_beside{};             ///< what documents set beside their surface; none: nothing
   std::vector<SidePanelOptions> also{};  ///< further panels, which show the same
   SessionController* guide = nullptr;    ///< leads the session and says when it ends; null: nobody does. Outlives it
 };

@@ -90,7 +90,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   ui.note = 0;
   ui.pointing.wedge = 0;
   ui.leaving = false;
-  ui.deleting = 0;
+  ui.choosing.deleting = 0;
   ui.sweep.reset();
   editor_ = files_.kept.begin(
       std::move(found), std::move(files_.opened->session),

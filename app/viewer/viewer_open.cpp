@@ -105,7 +105,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   tools_.reset(new Tools{LightTool(scene_), BoxTool(scene_), ClickTool(scene_),
                          NavigateTool(scene_, *input_.steering, input_.mouse), SlicesTool(scene_),
                          MarksTool(scene_, std::move(font)), WedgesTool(scene_),
-                         CompanionTool(scene_, options_.read_beside, letters)});
+                         CompanionTool(scene_, options_.sources.beside, letters)});
   tools_->companion.set_own_name(options_.around.title);
   place_ = std::make_unique<ViewerPlace>(
       ViewerPlace::Parts{options_, given_.presenter, given_.clock, scene_, *displays_, *input_.steering,
