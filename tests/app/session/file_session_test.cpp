@@ -147,7 +147,7 @@ TEST_F(FileSessions, UnderAnotherNameASurfaceOfTheScanFindsWhatWasNotedOnTheFirs
 
 TEST_F(FileSessions, WhatANewerProgramWroteIsSetAsideToldAndFoundByThatProgramAgain) {
   noted({"one"});
-  for (const fs::path& file : {beside(), state_file()}) replace(file, "\"version\": 6", "\"version\": 99");
+  for (const fs::path& file : {beside(), state_file()}) replace(file, "\"version\": 7", "\"version\": 99");
   const Texts before = files();
   {
     WorkWindow looked = open(a_);
@@ -168,7 +168,7 @@ TEST_F(FileSessions, WhatANewerProgramWroteIsSetAsideToldAndFoundByThatProgramAg
   for (const fs::path& in : {a_.parent_path(), folder_.state()})
     for (const auto& each : fs::directory_iterator(in))
       if (each.path().string().find(".orphan-") != std::string::npos) {
-        replace(each.path(), "\"version\": 99", "\"version\": 6");  // the newer program reads it
+        replace(each.path(), "\"version\": 99", "\"version\": 7");  // the newer program reads it
         ++newer;
       }
   EXPECT_EQ(newer, 2);
@@ -322,7 +322,7 @@ TEST_F(FileSessions, SessionsOfBeforeAreFoundByThePathAndMoveToTheNewPlaces) {
 }
 
 TEST_F(FileSessions, AHostileFileBesideIsNoWorkOfOurs) {
-  for (const char* text : {"", "{}", "[]", "\xff\xfe", "{\"format\": \"dubsar document\", \"version\": 6}"}) {
+  for (const char* text : {"", "{}", "[]", "\xff\xfe", "{\"format\": \"dubsar document\", \"version\": 7}"}) {
     write(beside(), text);
     WorkWindow window = open(a_);
     EXPECT_EQ(window.texts(), Texts()) << text;
