@@ -19,7 +19,7 @@ TEST(AddedField, IsKeptInSessionsAndOlderOnesAreReadWithoutIt) {
   EXPECT_EQ(*again, document) << "and so it has a step of the history";
 
   nlohmann::json older = nlohmann::json::parse(text);
-  ASSERT_EQ(older.at("version"), 7);
+  ASSERT_EQ(older.at("version"), 8);
   ASSERT_EQ(older.erase("dust"), 1U);
   older["version"] = 7;
   const auto read = parse_document(older.dump(), "session");
