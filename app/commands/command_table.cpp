@@ -28,7 +28,8 @@ CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
   for (std::vector<Command>& part :
        std::array{window_commands(), view_commands(), look_commands(styles), shade_commands(styles), light_commands(),
                   back_face_commands(), mark_commands(), text_commands(), section_commands(), slice_commands(),
-                  wedge_commands(), export_commands(), film_commands(), file_commands(), companion_commands(), work_commands()})
+                  wedge_commands(), export_commands(), film_commands(), file_commands(), companion_commands(),
+                  work_commands()})
     for (Command& command : part) out.add(std::move(command));
   return out;
 }

@@ -44,7 +44,7 @@ LatticeCut::LatticeCut(std::vector<std::uint32_t> block, std::uint32_t blocks, c
   });
 }
 
-/// In layers so thin that neighbours seldom share one: a sort by height takes six times as long.
+/// In layers so thin that neighbours seldom share one.
 void LatticeCut::list_rising(std::uint32_t begin, std::uint32_t end) {
   if (begin == end) return;
   constexpr std::size_t kLayers = 1 << 10;

@@ -69,8 +69,8 @@ struct Wedge {
   bool has_air() const noexcept { return state != WedgeCase::kFilled; }
 };
 
-/// A line that was ruled, in input voxel coordinates: places on the surface before it was, from left to right, as far as
-/// at least half of its depth is there.
+/// A line that was ruled, in input voxel coordinates: places on the surface before it was, from left to right, as far
+/// as at least half of its depth is there.
 struct RuledLine {
   Owner owner = Owner::kTablet;
   Side side = Side::kObverse;

@@ -176,7 +176,8 @@ TEST(Rulings, ThePhantomsAreFoundWithTheirEndsWithinHalfAMillimetre) {
       for (const double off : {ruling.line_mm.front().x - at->front().x, ruling.line_mm.back().x - at->back().x}) {
         ++ends;
         near += std::abs(off) <= 0.5 ? 1 : 0;
-        std::printf("seed %d end off %.2f mm, at %.1f of %.1f to %.1f\n", static_cast<int>(seed), off, ruling.line_mm.front().y, at->front().x, at->back().x);
+        std::printf("seed %d end off %.2f mm, at %.1f of %.1f to %.1f\n", static_cast<int>(seed), off,
+                    ruling.line_mm.front().y, at->front().x, at->back().x);
       }
     }
     wanted += static_cast<int>(side.lines.size());
