@@ -133,7 +133,7 @@ Result<TiffPage> TiffFile::describe() {
   page.offset = TIFFCurrentDirOffset(tiff);
   page.width = width;
   page.height = height;
-  page.depth = std::max<std::int64_t>(1, field<std::uint32_t>(tiff, TIFFTAG_IMAGEDEPTH, 1));
+  page.data.depth = std::max<std::int64_t>(1, field<std::uint32_t>(tiff, TIFFTAG_IMAGEDEPTH, 1));
   page.bits = field<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE, 1);
   page.channels = field<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
   page.palette = field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_PALETTE;
@@ -169,7 +169,7 @@ Result<TiffPage> TiffFile::describe() {
   page.big_endian = TIFFIsBigEndian(tiff) != 0;
   page.white_is_zero =
       field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE;
-  if (scheme == COMPRESSION_NONE && TIFFIsTiled(tiff) == 0) page.data_offset = in_one_piece(tiff);
+  if (scheme == COMPRESSION_NONE && TIFFIsTiled(tiff) == 0) page.data.offset = in_one_piece(tiff);
   return page;
 }
 

@@ -27,14 +27,19 @@ struct TiffTexts {
   std::string description, name, software;
 };
 
+/// Where the pixels of a page lie.
+struct TiffData {
+  std::int64_t depth = 1;    ///< pictures in this page, one behind the other (ImageDepth, tag 32997)
+  std::int64_t offset = -1;  ///< of uncompressed pixels whose strips lie one behind the other; -1: they do not
+};
+
 /// Facts about one page.
 struct TiffPage {
   enum class Sample { kUnsigned, kSigned, kFloat, kOther };
   std::uint64_t offset = 0;  ///< of its directory, for TiffFile::select()
   std::int64_t width = 0, height = 0;
-  std::int64_t depth = 1;  ///< pictures in this page, one behind the other (ImageDepth, tag 32997)
-  int bits = 0;            ///< per sample
-  int channels = 1;        ///< samples per pixel
+  int bits = 0;      ///< per sample
+  int channels = 1;  ///< samples per pixel
   Sample sample = Sample::kUnsigned;
   bool palette = false;     ///< colours by table
   bool reduced = false;     ///< a thumbnail or a coarser level of another page
@@ -42,9 +47,9 @@ struct TiffPage {
   TiffResolution resolution;
   TiffTexts texts;
   int orientation = 0;  ///< tag 274, 1 to 8: where the first row and column of the pixels lie; 0: not stated, as 1
-  std::int64_t data_offset = -1;  ///< of uncompressed pixels whose strips lie one behind the other; -1: they do not
-  bool white_is_zero = false;     ///< as stored; read_gray() turns it
-  bool big_endian = false;        ///< byte order of the file
+  TiffData data;
+  bool white_is_zero = false;  ///< as stored; read_gray() turns it
+  bool big_endian = false;     ///< byte order of the file
 };
 
 /// A TIFF or BigTIFF file, read without memory mapping. One thread per object; open the file several times to read

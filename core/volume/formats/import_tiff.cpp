@@ -225,11 +225,11 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
           parse_tiff_description(page.texts.description).images > 1)
         return fail(ErrorKind::kBadData, "import_tiff: {} holds several series of pictures, expected one volume",
                     path.string());
-      if (page.depth > 1 && (files.size() > 1 || pages.size() > 1 || page.data_offset < 0))
+      if (page.data.depth > 1 && (files.size() > 1 || pages.size() > 1 || page.data.offset < 0))
         return fail(ErrorKind::kBadData,
                     "import_tiff: {} holds {} slices in one page (ImageDepth, tag 32997), and these packed, in tiles "
                     "or beside other pages; expected a page a slice, save it so",
-                    path.string(), page.depth);
+                    path.string(), page.data.depth);
       // Some programs state it in the first page alone.
       const int oriented = page.orientation > 0 ? page.orientation : std::max(1, pages.front().orientation);
       if (oriented != std::max(1, first->orientation))
@@ -250,7 +250,8 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   const ScalarType type = *type_of(*first);
   // ImageJ above 4 GiB and tifffile where it was told to write one page and the rest of the slices behind it; pages
   // that are deep themselves.
-  const std::int64_t behind = slices.size() == 1 && first->data_offset >= 0 ? std::max(said.images, first->depth) : 1;
+  const std::int64_t behind =
+      slices.size() == 1 && first->data.offset >= 0 ? std::max(said.images, first->data.depth) : 1;
   const std::int64_t depth = std::max(behind, static_cast<std::int64_t>(slices.size()));
   if (depth < 2)
     return fail(ErrorKind::kBadData,
@@ -290,7 +291,7 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   if (behind > 1) {
     DUBSAR_ASSIGN(InputFile file, InputFile::open(files.front()));
     std::vector<FlatSegment> segments;
-    segments.push_back({std::move(file), first->data_offset, info.stored.logical_bytes});
+    segments.push_back({std::move(file), first->data.offset, info.stored.logical_bytes});
     const ByteOrder order = first->big_endian ? ByteOrder::kBig : ByteOrder::kLittle;
     ScalarMap map;  // as read_gray() does
     if (first->white_is_zero && first->sample == TiffPage::Sample::kUnsigned)
