@@ -107,20 +107,31 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
                          MarksTool(scene_, std::move(font)), WedgesTool(scene_),
                          CompanionTool(scene_, options_.sources.beside, letters)});
   tools_->companion.set_own_name(options_.around.title);
-  place_ = std::make_unique<ViewerPlace>(ViewerPlace::Parts{
-      options_, given_.presenter, given_.clock, scene_, *displays_, *input_.steering, *input_.sources, files_.list,
-      tools_->slices, known_.film, known_.wedges, known_.exporter, tools_->companion,
-      [this]() -> Result<void> {  // simulated time stands still while a file is read
-        if (options_.time.fps == 0) return {};
-        given_.loader->wait();
-        return put_read().value_or(Result<void>());
-      },
-      [this] {  // it may have been a touch panel, or the mouse with a button down
-        for (InputEvent& event : known_.touch.let_go(given_.clock.now())) handle(std::move(event));
-        input_.steering->let_go_of_mouse();
-        present_.words.help_made = -1;
-      },
-      [this] { return may_end(); }});
+  place_ = std::make_unique<ViewerPlace>(
+      ViewerPlace::Parts{options_,
+                         given_.presenter,
+                         given_.clock,
+                         scene_,
+                         *displays_,
+                         *input_.steering,
+                         *input_.sources,
+                         files_.list,
+                         tools_->slices,
+                         known_.film,
+                         known_.wedges,
+                         known_.exporter,
+                         tools_->companion,
+                         {[this]() -> Result<void> {  // simulated time stands still while a file is read
+                            if (options_.time.fps == 0) return {};
+                            given_.loader->wait();
+                            return put_read().value_or(Result<void>());
+                          },
+                          [this] {  // it may have been a touch panel, or the mouse with a button down
+                            for (InputEvent& event : known_.touch.let_go(given_.clock.now())) handle(std::move(event));
+                            input_.steering->let_go_of_mouse();
+                            present_.words.help_made = -1;
+                          },
+                          [this] { return may_end(); }}});
   ask_the_session();
   editor_ = make_editor(History(first.document), first.document);
   scene_.editor = editor_.get();

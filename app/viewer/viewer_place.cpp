@@ -63,23 +63,23 @@ void ViewerPlace::recentre_heads() {
 
 bool ViewerPlace::toggle_source(std::size_t index) {
   if (!to_.sources.toggle(index)) return false;
-  to_.sources_changed();
+  to_.answers.sources_changed();
   return true;
 }
 
 Result<void> ViewerPlace::open_file(const std::string& path) {
   DUBSAR_TRY(to_.files.open({fs::path(path)}));
-  return to_.file_asked();
+  return to_.answers.file_asked();
 }
 
 Result<void> ViewerPlace::open_recent(std::size_t number) {
   DUBSAR_TRY(to_.files.open_recent(number));
-  return to_.file_asked();
+  return to_.answers.file_asked();
 }
 
 Result<void> ViewerPlace::switch_file(int step) {
   DUBSAR_TRY(to_.files.step(step));
-  return to_.file_asked();
+  return to_.answers.file_asked();
 }
 
 /// What is being read to stand beside is taken away.
@@ -91,7 +91,7 @@ bool ViewerPlace::stop_opening() {
 }
 
 void ViewerPlace::end() {
-  if (to_.may_end()) to_.presenter.end();
+  if (to_.answers.may_end()) to_.presenter.end();
 }
 
 Result<SurfacePin> ViewerPlace::pin_seen() {

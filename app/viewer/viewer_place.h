@@ -18,6 +18,12 @@ namespace dubsar::app {
 /// One thread: that of the session.
 class ViewerPlace final : public Workplace {
  public:
+  /// What it asks of the window.
+  struct Answers {
+    std::function<Result<void>()> file_asked;  ///< another file is to be shown
+    std::function<void()> sources_changed;
+    std::function<bool()> may_end;
+  };
   /// All outlive it.
   struct Parts {
     const ViewOptions& options;
@@ -33,9 +39,7 @@ class ViewerPlace final : public Workplace {
     WedgeFinder& wedges;
     Exporter& exporter;
     CompanionTool& companion;
-    std::function<Result<void>()> file_asked;  ///< another file is to be shown
-    std::function<void()> sources_changed;
-    std::function<bool()> may_end;
+    Answers answers;
   };
   explicit ViewerPlace(Parts parts) : to_(std::move(parts)) {}
 

@@ -85,14 +85,12 @@ class FakePlace final : public Workplace {
   bool stop_publishing() override { return !std::exchange(published, {}).empty(); }
   bool stop_wedges() override { return !std::exchange(sought, {}).empty(); }
   Result<void> play_film(std::optional<double> from_s) override {
-    ++plays;
-    played_from_s = from_s;
+    played_from_s.push_back(from_s);
     return {};
   }
   std::vector<std::string> pictures, sought, published;
   std::string next;  ///< open file
-  int plays = 0;
-  std::optional<double> played_from_s;
+  std::vector<std::optional<double>> played_from_s;
   int display = 0, retries = 0, recentred = 0;
   bool fullscreen = false, swapped = false, ended = false;
   std::vector<std::string> opened;

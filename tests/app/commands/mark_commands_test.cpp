@@ -186,7 +186,7 @@ TEST(MarkCommands, AFilmIsMadeOfWhatIsSeen) {
   EXPECT_EQ(bench.now().unpack, 0.0);
   EXPECT_EQ(bench.now().now, bench.now().home);
   bench.run("play");
-  EXPECT_EQ(bench.place.plays, 1);
+  EXPECT_EQ(bench.place.played_from_s.size(), 1u);
   bench.run("delete_keyframe 2");
   EXPECT_EQ(bench.now().keyframes.size(), 2u);
   const fs::path file = fs::temp_directory_path() / fmt::format("dubsar_film_{}.json", ::getpid());
@@ -220,9 +220,9 @@ TEST(MarkCommands, KeyframesAreReplacedMovedTimedAndPlayedFrom) {
   EXPECT_NE(bench.refusal("keyframe_seconds 1 0").find("0.05"), std::string::npos);
   EXPECT_NE(bench.refusal("move_keyframe 1 9"), "accepted");
   bench.run("play 3");
-  EXPECT_EQ(bench.place.played_from_s, 2.5);
+  EXPECT_EQ(bench.place.played_from_s.back(), 2.5);
   bench.run("play");
-  EXPECT_FALSE(bench.place.played_from_s);
+  EXPECT_FALSE(bench.place.played_from_s.back());
   bench.run("side left");
   bench.run("replace_keyframe 2");
   EXPECT_EQ(bench.now().keyframes[1].camera, bench.now().now);

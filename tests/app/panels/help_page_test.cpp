@@ -51,8 +51,8 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "Mouse", "shift+left drag"), "move");
   EXPECT_EQ(find(page, "Mouse", "wheel"), "zoom");
   EXPECT_EQ(find(page, "Back", "Backspace  Ctrl+Z"), "undo");
-  EXPECT_EQ(find(page, "This window", "P  L  T  M  Shift+N  Shift+G  C  Shift+S  Shift+K  Shift+E  Shift+F"),
-            "panel: Parts, Light, Style, Measures, Notes, Wedges, Cuts, Slices, Film, Export, Files");
+  EXPECT_EQ(find(page, "This window", "P  L  T  M  Shift+N  Shift+G  C  Shift+S  Shift+K  Shift+E  Shift+F"), "panel")
+      << "a list of more than 72 letters is for the palette";
   EXPECT_EQ(find(page, "Light", "Alt+1 to Alt+8"), "raking light from one of eight directions");
   EXPECT_EQ(find(page, "Measures", "V  D  A  W  F  N  I  J  Shift+W  Shift+A  Shift+M"), "what a click does")
       << "a list of more than 72 letters is for the palette";
