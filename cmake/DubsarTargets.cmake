@@ -16,6 +16,10 @@ target_compile_options(dubsar_options INTERFACE
   -ffp-contract=off  # a*d-b*c must be symmetric: the asymptotic decider depends on it
   -fstack-protector-strong)
 target_compile_definitions(dubsar_options INTERFACE $<$<CONFIG:Debug>:_GLIBCXX_ASSERTIONS>)
+if(NOT DUBSAR_SANITIZE)  # copies into buffers whose size the compiler knows are checked; the sanitizers check more, and all of them
+  target_compile_options(dubsar_options INTERFACE $<$<CONFIG:Release,RelWithDebInfo>:-U_FORTIFY_SOURCE>
+    $<$<CONFIG:Release,RelWithDebInfo>:-D_FORTIFY_SOURCE=3>)
+endif()
 if(DUBSAR_WERROR)
   target_compile_options(dubsar_options INTERFACE -Werror)
 endif()

@@ -32,7 +32,7 @@ joined "$out/handcopy.png" light.png found.png pressed.png
 for style in photograph raking; do
   "$program" render "$s264" -o $style.png --unit mm --style $style --light 315,20 --dpi 508 --ground white -q >/dev/null
 done
-drawn "$s264" --unit mm --width 0.8 --side obverse --title "S264" -o s264  # heads of .8 mm: docs/edition.md
+drawn "$s264" --unit mm --side obverse --title "S264" -o s264
 gs -q -dNOPAUSE -dBATCH -dGraphicsAlphaBits=4 -dTextAlphaBits=4 -sDEVICE=png16m -r508 -sOutputFile=s264.png s264.pdf
 convert s264.png -crop 560x620+80+220 +repage s264.png
 joined "$out/handcopy_s264.png" photograph.png raking.png s264.png

@@ -45,6 +45,9 @@ class Elf {
     return out;
   }
   std::uint16_t type() const { return head_.e_type; }
+  bool names(const std::string& symbol) const {
+    return bytes_.find(std::string(1, '\0') + symbol + '\0') != std::string::npos;
+  }
 
  private:
   template <class T>
@@ -85,6 +88,14 @@ TEST(BuiltFiles, LibrariesComeFromTheSystemsFoldersAndTablesAreBoundAtTheStart) 
     EXPECT_EQ(elf.segment(PT_GNU_STACK)->p_flags & PF_X, 0u) << path;
   }
 }
+
+#ifdef NDEBUG  // builds for debugging have the sanitizers instead
+TEST(BuiltFiles, CopiesIntoBuffersOfKnownSizeAreChecked) {
+  const Elf elf(DUBSAR_PROGRAM);
+  ASSERT_TRUE(elf.good());
+  EXPECT_TRUE(elf.names("__memcpy_chk"));
+}
+#endif
 
 }  // namespace
 }  // namespace dubsar::test

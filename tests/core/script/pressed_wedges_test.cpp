@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <random>
-#include <regex>
+#include <sstream>
 #include <string>
 
 #include "core/script/copy_sheet.h"
@@ -141,7 +141,8 @@ std::vector<Pressed> page_of_crossings() {
 /// What was pressed later is whole.
 TEST(PressedWedges, TheLaterOfTwoIsWhole) {
   const std::vector<Pressed> page = page_of_crossings();
-  const auto pairs = static_cast<double>(page.size() / 2);
+  const std::size_t couples = page.size() / 2;
+  const auto pairs = static_cast<double>(couples);
   Progress progress;
   const auto found = find_wedges(plate(page, kPlateStep, 0.15), {}, progress);
   ASSERT_TRUE(found) << found.error().message;
@@ -204,14 +205,19 @@ TEST(PressedWedges, TheHandCopyShowsThemWhereTheyAre) {
   EXPECT_EQ(drawn, found->wedges.size());
 }
 
-/// Numbers of an SVG path, as x, y pairs.
-std::vector<glm::dvec2> path_points(const std::string& d) {
-  std::vector<double> numbers;
-  static const std::regex number("-?[0-9]+\\.[0-9]+");
-  for (std::sregex_iterator it(d.begin(), d.end(), number), end; it != end; ++it)
-    numbers.push_back(std::stod(it->str()));
-  std::vector<glm::dvec2> out;
-  for (std::size_t k = 0; k + 1 < numbers.size(); k += 2) out.push_back({numbers[k], numbers[k + 1]});
+/// The points of each path of this class in an SVG file.
+std::vector<std::vector<glm::dvec2>> paths_of(const std::string& svg, const std::string& name) {
+  std::vector<std::vector<glm::dvec2>> out;
+  const std::string before = "class=\"" + name + "\" d=\"";
+  for (std::size_t at = svg.find(before); at != std::string::npos; at = svg.find(before, at)) {
+    at += before.size();
+    std::string numbers = svg.substr(at, svg.find('"', at) - at);
+    for (char& c : numbers)
+      if ((c < '0' || c > '9') && c != '.' && c != '-') c = ' ';
+    std::istringstream words(numbers);
+    out.emplace_back();
+    for (glm::dvec2 q; words >> q.x >> q.y;) out.back().push_back(q);
+  }
   return out;
 }
 
@@ -228,10 +234,10 @@ TEST(PressedWedges, CornersOfHeadsInTheSvgLieWhereTheStylusHadThem) {
   const auto sheet = hand_copy(mesh, *found, options);
   ASSERT_TRUE(sheet) << sheet.error().message;
   const std::string svg = svg_of(*sheet);
-  std::smatch match;
-  ASSERT_TRUE(std::regex_search(svg, match, std::regex(R"re(class="outline" d="([^"]*)")re")));
+  const auto outlines = paths_of(svg, "outline");
+  ASSERT_FALSE(outlines.empty());
   glm::dvec2 low(1e30), high(-1e30);
-  for (const glm::dvec2& q : path_points(match[1].str())) low = glm::min(low, q), high = glm::max(high, q);
+  for (const glm::dvec2& q : outlines[0]) low = glm::min(low, q), high = glm::max(high, q);
   // As exact as a cell of the outline's mask on either side.
   EXPECT_NEAR(high.x - low.x, 2 * kPlateHalf, 0.21);
   EXPECT_NEAR(high.y - low.y, 2 * kPlateHalf, 0.21);
@@ -248,9 +254,7 @@ TEST(PressedWedges, CornersOfHeadsInTheSvgLieWhereTheStylusHadThem) {
     pressed.push_back({on_paper(head + 0.5 * kPlateWidth * across), on_paper(head - 0.5 * kPlateWidth * across)});
   }
   double squares = 0.0, corners = 0.0;
-  static const std::regex head(R"re(class="head" d="([^"]*)")re");
-  for (std::sregex_iterator it(svg.begin(), svg.end(), head), end; it != end; ++it) {
-    const std::vector<glm::dvec2> drawn = path_points((*it)[1].str());
+  for (const std::vector<glm::dvec2>& drawn : paths_of(svg, "head")) {
     ASSERT_EQ(drawn.size(), 2U);
     double best = 1e30;
     for (const auto& [left, right] : pressed)
