@@ -107,7 +107,7 @@ Result<TriMesh> load_foreign(const MeshRequest& request, Progress& progress,
       if (p.name == wanted) id = p.id;
     const auto& labels = mesh.triangle_partition;
     if (std::find(labels.begin(), labels.end(), id) == labels.end()) return no_such_partition(wanted, mesh.partitions);
-    TriMesh part = select_partition(mesh, static_cast<PartitionId>(id));
+    TriMesh part = select_partitions(mesh, static_cast<std::uint8_t>(1u << id));
     if (joined)
       append(*joined, part);
     else

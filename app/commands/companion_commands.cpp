@@ -41,8 +41,6 @@ Command set_beside() {
       }
     }
     DUBSAR_TRY(check_surface_file(file));
-    if (!names_a_surface(file))
-      return fail(ErrorKind::kUsage, "set_beside: {} is no surface by its name, expected {}", file, kSurfaceSuffixes);
     std::error_code error;
     Companion companion{fs::absolute(file, error).lexically_normal().string(), {}};
     DUBSAR_ASSIGN(companion.content, file_checksum(file));

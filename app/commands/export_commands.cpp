@@ -13,7 +13,6 @@ namespace dubsar::app {
 namespace {
 
 constexpr Text kExportGroup = "group.export";
-constexpr double kNarrowestMm = 5.0, kWidestMm = 2000.0, kFewestDpi = 50.0, kMostDpi = 4800.0;  // as verbs take them
 
 Command write_published() {
   Command out{"export", kExportGroup, {}, "arg.export"};
@@ -51,9 +50,9 @@ Command choose_how() {
       return std::any_of(words.begin(), words.end(), [&](const char* word) { return value == word; });
     };
     if (what == "width") {
-      DUBSAR_ASSIGN(choice.width_mm, number_argument("export_as width", value, kNarrowestMm, kWidestMm));
+      DUBSAR_ASSIGN(choice.width_mm, number_argument("export_as width", value, kFigureMm.least, kFigureMm.most));
     } else if (what == "dpi") {
-      DUBSAR_ASSIGN(choice.dpi, number_argument("export_as dpi", value, kFewestDpi, kMostDpi));
+      DUBSAR_ASSIGN(choice.dpi, number_argument("export_as dpi", value, kPlateDpi.least, kPlateDpi.most));
     } else if (what == "ground" && one_of({"white", "grey", "black", "none"})) {
       choice.ground = value;
     } else if (what == "hand" && one_of({"outlined", "filled", "weighted"})) {

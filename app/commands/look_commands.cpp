@@ -98,6 +98,19 @@ Command evidence() {
   return out;
 }
 
+Command hatch() {
+  Command out{"hatch", "group.style", {}, "arg.hatch"};
+  out.values = {"sepia", "blue"};
+  out.closed = out.optional = true;
+  out.run = [why = out.name](Editor& editor, const std::string& text) -> Result<void> {
+    Document next = editor.document();
+    next.style.hatch = !text.empty() ? text : next.style.hatch == "blue" ? "sepia" : "blue";
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
 Command strength() {
   Command out{"strength", "group.style", {}};
   out.argument = "arg.to_200";
@@ -246,6 +259,7 @@ std::vector<Command> look_commands(const std::vector<std::string>& styles) {
   if (!styles.empty()) out.push_back(next_style(styles));
   out.push_back(occlusion());
   out.push_back(evidence());
+  out.push_back(hatch());
   out.push_back(strength());
   out.push_back(part());
   out.push_back(part_opacity());

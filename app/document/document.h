@@ -34,6 +34,7 @@ struct StyleChoice {
   double strength = 1.0;        ///< of its colours: 0 none, 1 as designed, 2 twice
   bool occlusion = true;        ///< hollows are darker
   bool evidence = true;         ///< what the scan does not show is hatched
+  std::string hatch{};          ///< its colours, as the command says them; empty: sepia
   std::string other{};          ///< a second style that it is mixed with; empty: none
   double share = 0.0;           ///< of that, 0..1
   double radiance = 0.0;        ///< radiance scaling besides that of the style, 0..2

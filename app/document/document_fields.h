@@ -44,6 +44,7 @@ void fields(auto& f, StyleChoice& v) {
   f("strength", v.strength);
   f("occlusion", v.occlusion);
   f("evidence", v.evidence);
+  f("hatch", v.hatch);
   f("other", v.other);
   f("share", v.share);
   f("radiance", v.radiance);

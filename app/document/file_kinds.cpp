@@ -40,6 +40,8 @@ Result<void> check_surface_file(const std::filesystem::path& file) {
     return fail(ErrorKind::kNoInput, "{}: there is no such file", file.string());
   if (std::filesystem::is_directory(file, error))
     return fail(ErrorKind::kUsage, "{} is a folder, expected a surface such as tablet.exa", file.string());
+  if (!names_a_surface(file))
+    return fail(ErrorKind::kUsage, "{} is no surface by its name, expected {}", file.string(), kSurfaceSuffixes);
   return {};
 }
 

@@ -18,7 +18,7 @@ bool names_a_scan(const std::filesystem::path& path);
 /// A picture that may be a slice of a scan: TIFF.
 bool names_a_slice(const std::filesystem::path& path);
 
-/// kNoInput: no such file; kUsage: a folder. What is in it is not looked at.
+/// kNoInput: no such file; kUsage: a folder, or no surface by its name. What is in it is not looked at.
 Result<void> check_surface_file(const std::filesystem::path& file);
 
 }  // namespace dubsar::app

@@ -8,7 +8,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr float kFigurePx = 84.0f, kExportBarPx = 170.0f;
+constexpr float kFigurePx = 84.0f;
 
 template <class Label>
 std::vector<std::pair<std::string, std::string>> labelled(std::initializer_list<const char*> words,
@@ -30,11 +30,12 @@ void draw_words_row(const PanelContext& context, Text heading, const char* what,
   }
 }
 
-void draw_number(const PanelContext& context, const std::string& label, const char* what, double now, float least,
-                 float most) {
+void draw_number(const PanelContext& context, const std::string& label, const char* what, double now,
+                 const PrintBounds& bounds) {
   auto value = static_cast<float>(now);
   ImGui::SetNextItemWidth(kFigurePx);
-  if (ImGui::DragFloat(label.c_str(), &value, 1.0f, least, most, "%.0f", ImGuiSliderFlags_AlwaysClamp))
+  if (ImGui::DragFloat(label.c_str(), &value, 1.0f, static_cast<float>(bounds.least), static_cast<float>(bounds.most),
+                       "%.0f", ImGuiSliderFlags_AlwaysClamp))
     context.commands.push_back(fmt::format("export_as {} {:.0f}", what, value));
 }
 
@@ -42,8 +43,8 @@ void draw_number(const PanelContext& context, const std::string& label, const ch
 
 void draw_export(const PanelContext& context) {
   const ExportChoice& choice = context.state.ui.choosing.publishing;
-  draw_number(context, tr("export.width"), "width", choice.width_mm, 5.0f, 2000.0f);
-  draw_number(context, tr("export.dpi"), "dpi", choice.dpi, 50.0f, 4800.0f);
+  draw_number(context, tr("export.width"), "width", choice.width_mm, kFigureMm);
+  draw_number(context, tr("export.dpi"), "dpi", choice.dpi, kPlateDpi);
   draw_words_row(
       context, "export.ground", "ground", choice.ground,
       labelled({"white", "grey", "black", "none"}, [](const char* word) { return tr_name("export_ground", word); }));
@@ -54,11 +55,8 @@ void draw_export(const PanelContext& context) {
       context, "export.hand", "hand", choice.hand,
       labelled({"outlined", "filled", "weighted"}, [](const char* word) { return tr_name("export_hand", word); }));
   ImGui::Separator();
-  if (const auto& job = context.state.exporting) {
-    say_dim(job->name);
-    ImGui::ProgressBar(static_cast<float>(job->fraction), ImVec2(kExportBarPx, 0.0f));
-    ImGui::SameLine();
-    button(context, tr("export.stop"), "stop_export", false);
+  if (context.state.exporting) {
+    draw_job(context, *context.state.exporting, "stop_export");
     return;
   }
   bool first = true;

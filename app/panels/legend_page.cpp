@@ -12,6 +12,8 @@ namespace dubsar::app {
 namespace {
 
 constexpr float kBarEm = 15.0f, kTall = 12.0f, kPad = 10.0f;
+constexpr float kWholeLegendAbove = 900.0f,
+                kSmallestLegend = 0.6f;  // pixels of height from which on letters are of full size
 
 }  // namespace
 
@@ -27,15 +29,16 @@ std::optional<LegendPicture> legend_of(const Style& style, const SurfaceDifferen
 }
 
 void draw_legend(const LegendPicture& legend, float left, float bottom) {
-  const float line = ImGui::GetTextLineHeight(), bar = kBarEm * ImGui::GetFontSize(),
-              aside = 1.5f * ImGui::GetFontSize(),
-              words = legend.figures.empty() ? 0.0f : ImGui::CalcTextSize(legend.figures.c_str()).x + aside,
+  const float scale = std::clamp(bottom / kWholeLegendAbove, kSmallestLegend, 1.0f), em = scale * ImGui::GetFontSize(),
+              line = scale * ImGui::GetTextLineHeight(), bar = kBarEm * em, aside = 1.5f * em,
+              words = legend.figures.empty() ? 0.0f : scale * ImGui::CalcTextSize(legend.figures.c_str()).x + aside,
               width = std::max(bar + 2 * aside, words) + 2 * kPad,
               height = (legend.figures.empty() ? 2 : 3) * line + kTall + 2 * kPad + 6.0f;
   ImGui::SetNextWindowPos(ImVec2(left, bottom - height));
   ImGui::SetNextWindowSize(ImVec2(width, height));
   ImGui::SetNextWindowBgAlpha(0.8f);
   ImGui::Begin("legend", nullptr, kFixed | ImGuiWindowFlags_NoInputs);
+  ImGui::SetWindowFontScale(scale);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::string title = legend.unit.empty() ? legend.name : fmt::format("{}, {}", legend.name, legend.unit);
   const ImVec2 corner(left + kPad + aside, bottom - height + kPad);

@@ -8,12 +8,12 @@
 
 #include "app/panels/panel_kit.h"
 #include "app/stage/light_over.h"
+#include "display/render/shading.h"
 
 namespace dubsar::app {
 namespace {
 
 constexpr float kBall = 110.0f;
-constexpr ImU32 kHatch = IM_COL32(122, 158, 204, 255), kStripe = IM_COL32(38, 70, 128, 255);  // as the surface has it
 
 std::string style_words(const std::string& name) { return tr_name("style", name); }
 
@@ -28,14 +28,21 @@ void draw_evidence(const PanelContext& context) {
   bool evidence = context.state.document.style.evidence;
   if (ImGui::Checkbox(tr("look.mark_inferred").c_str(), &evidence)) context.commands.push_back("evidence");
   explain(context, "evidence");
+  const bool blue = context.state.document.style.hatch == "blue";
+  const Hatch& hatch = blue ? kBlueHatch : kSepiaHatch;
+  const auto color = [](const Rgb8& c) { return IM_COL32(c[0], c[1], c[2], 255); };
+  if (evidence) {
+    ImGui::SameLine();
+    button(context, tr("look.blue"), blue ? "hatch sepia" : "hatch blue", blue);
+  }
   const double all = context.state.evidence.measured_mm2 + context.state.evidence.inferred_mm2;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float size = ImGui::GetTextLineHeight();
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   const ImVec2 end(corner.x + 2.0f * size, corner.y + size);
-  draw->AddRectFilled(corner, end, kHatch);
+  draw->AddRectFilled(corner, end, color(hatch.ground));
   for (float x = corner.x; x < end.x; x += 8.0f)
-    draw->AddRectFilled(ImVec2(x, corner.y), ImVec2(std::min(x + 4.0f, end.x), end.y), kStripe);
+    draw->AddRectFilled(ImVec2(x, corner.y), ImVec2(std::min(x + 4.0f, end.x), end.y), color(hatch.stripe));
   ImGui::Dummy(ImVec2(2.0f * size + 4.0f, size));
   ImGui::SameLine();
   ImGui::TextUnformatted(figures("{:.1f} mm\u00b2, {:.1f} %", context.state.evidence.inferred_mm2,

@@ -68,15 +68,6 @@ void draw_rows(const std::vector<DialogueRow>& rows, Entered& typed, std::vector
   }
 }
 
-/// As rough as rough_duration().
-std::string duration_words(double seconds) {
-  const auto to = [](double value, long step) { return step * std::lround(value / static_cast<double>(step)); };
-  if (seconds < 10) return tr("time.few");
-  if (seconds < 50) return tr("time.seconds", to(seconds, 5));
-  if (seconds < 3300) return tr("time.minutes", std::max(1L, to(seconds / 60, seconds < 570 ? 1 : 5)));
-  return tr("time.hours", to(seconds / 60, 10) / 60, to(seconds / 60, 10) % 60);
-}
-
 }  // namespace
 
 std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view typed) {
@@ -120,13 +111,13 @@ std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view
   return out;
 }
 
-std::string title_words(const std::string& shown, const std::optional<Opening>& opening) {
+std::string title_words(const std::string& shown, const std::optional<JobState>& opening) {
   if (!opening) return shown;
   const std::string reading = opening_words({opening->name, opening->share, {}});
   return shown.empty() ? reading : shown + ", " + reading;
 }
 
-std::string opening_words(const Opening& opening) {
+std::string opening_words(const JobState& opening) {
   std::string out = opening.share > 0
                         ? tr("files.reading_share", opening.name, fmt::format("{:.0f}", 100.0 * opening.share))
                         : tr("files.reading", opening.name);

@@ -9,7 +9,7 @@
 
 #include "app/commands/key_table.h"
 #include "app/document/folder_listing.h"
-#include "app/document/opening.h"
+#include "app/document/job_state.h"
 
 namespace dubsar::app {
 
@@ -25,7 +25,7 @@ struct FilesState {
   bool beside = false;               ///< what is chosen stands beside it
   std::vector<std::string> names{};  ///< of the open files, without their folders
   std::size_t shown = 0;             ///< of them
-  std::optional<Opening> opening{};
+  std::optional<JobState> opening{};
   std::vector<RecentFile> recent{};        ///< while the dialogue is open
   std::optional<FolderListing> listing{};  ///< the same
   friend bool operator==(const FilesState&, const FilesState&) = default;
@@ -44,11 +44,11 @@ struct DialogueRow {
 std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view typed);
 
 /// "reading tablet.exa: 43 %, about 5 s to go"; without the figures while nobody knows them.
-std::string opening_words(const Opening& opening);
+std::string opening_words(const JobState& opening);
 
 /// The file that is shown and the one that is being read: "tablet.exa", "tablet.exa, reading next.exa: 43 %"; empty
 /// where there is neither.
-std::string title_words(const std::string& shown, const std::optional<Opening>& opening);
+std::string title_words(const std::string& shown, const std::optional<JobState>& opening);
 
 /// Draws the dialogue into the current frame while `open`, and appends what was chosen.
 void draw_open_dialogue(bool open, const FilesState& files, float width, float height,

@@ -120,6 +120,22 @@ void say_dim(const std::string& words) {
   ImGui::PopStyleColor();
 }
 
+std::string duration_words(double seconds) {
+  const auto to = [](double value, long step) { return step * std::lround(value / static_cast<double>(step)); };
+  if (seconds < 10) return tr("time.few");
+  if (seconds < 50) return tr("time.seconds", to(seconds, 5));
+  if (seconds < 3300) return tr("time.minutes", std::max(1L, to(seconds / 60, seconds < 570 ? 1 : 5)));
+  return tr("time.hours", to(seconds / 60, 10) / 60, to(seconds / 60, 10) % 60);
+}
+
+void draw_job(const PanelContext& context, const JobState& job, const std::string& stop) {
+  constexpr float kBarPx = 170.0f;
+  say_dim(job.remaining_s ? job.name + ", " + tr("files.to_go", duration_words(*job.remaining_s)) : job.name);
+  ImGui::ProgressBar(static_cast<float>(job.share), ImVec2(kBarPx, 0.0f));
+  ImGui::SameLine();
+  button(context, tr("job.stop"), stop, false);
+}
+
 void say_fitted(ImU32 color, const std::string& words, float room) {
   ImGui::SetWindowFontScale(std::min(1.0f, room / std::max(1.0f, ImGui::CalcTextSize(words.c_str()).x)));
   ImGui::TextColored(ImColor(color), "%s", words.c_str());

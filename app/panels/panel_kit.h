@@ -46,6 +46,10 @@ void next_in_row(float width);
 bool percent_slider(const std::string& label, float& percent, float width, float most = 100.0f);
 /// Dim words that break where the panel ends.
 void say_dim(const std::string& words);
+/// As rough as rough_duration(), in the window's language.
+std::string duration_words(double seconds);
+/// Work beside the window: its name, how long it will still take, how far it is, and a button that posts `stop`.
+void draw_job(const PanelContext& context, const JobState& job, const std::string& stop);
 /// A line in letters so small that it ends within `room`, if it has to be.
 void say_fitted(ImU32 color, const std::string& words, float room);
 /// The width of a combo in which all of such words are seen, 120 at least.

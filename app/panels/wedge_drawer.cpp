@@ -9,16 +9,11 @@
 namespace dubsar::app {
 namespace {
 
-constexpr float kWedgeBarPx = 170.0f;
-
 std::string figure(double mm) { return local_figures(fmt::format("{:.2f}", mm)); }
 
 void draw_search(const PanelContext& context, bool any) {
-  if (const auto& job = context.state.finding) {
-    say_dim(job->name);
-    ImGui::ProgressBar(static_cast<float>(job->fraction), ImVec2(kWedgeBarPx, 0.0f));
-    ImGui::SameLine();
-    button(context, tr("wedge.stop"), "stop_wedges", false);
+  if (context.state.finding) {
+    draw_job(context, *context.state.finding, "stop_wedges");
     return;
   }
   button(context, any ? tr("wedge.again") : tr("wedge.find"), "find_wedges", false);

@@ -54,7 +54,7 @@ std::string evidence(const SurfaceFacts& facts) {
     if (part.inferred_area <= 0.0) continue;
     out += fmt::format(
         "<p>{}: {:.1f} % of the surface is measured, {:.1f} % is not in the scan: there it was closed smoothly, and is "
-        "blue in the picture above and hatched in those below.</p><div class=\"bar\"><i "
+        "brown in the picture above and hatched in those below.</p><div class=\"bar\"><i "
         "style=\"width:{:.2f}%\"></i></div>\n",
         markup_text(part.name), 100.0 * (1.0 - part.inferred_share()), 100.0 * part.inferred_share(),
         100.0 * part.inferred_share());

@@ -32,7 +32,7 @@ void color_as_seen(TriMesh& mesh, const Style& style, const SurfaceFields* field
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     if (mesh.triangle_inferred[t] != 0)
       for (const std::uint32_t v : mesh.triangles[t])
-        if (!measured[v]) mesh.colors[v] = style.inferred_color;
+        if (!measured[v]) mesh.colors[v] = style.hatch.whole();
 }
 
 std::int64_t coincident_triangles(const TriMesh& mesh) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/overall_progress.h"
 #include "app/document/job_state.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
@@ -23,8 +24,8 @@ class BackgroundJob {
   BackgroundJob(const BackgroundJob&) = delete;
   BackgroundJob& operator=(const BackgroundJob&) = delete;
 
-  /// What was being done is left.
-  void begin(std::string name, Work work);
+  /// What was being done is left. With a `plan` of its stages it is said how long it will still take.
+  void begin(std::string name, Work work, std::vector<PlannedStage> plan = {});
   /// Leaves what is being done; nobody hears of it again. False: nothing is.
   bool stop();
   /// How it ended, once; nothing as long as it works, or where nothing was begun.

@@ -5,15 +5,11 @@
 #include <condition_variable>
 #include <mutex>
 #include <system_error>
-#include <thread>
 #include <utility>
 
-#include "app/cli/overall_progress.h"
 #include "app/document/file_kinds.h"
 #include "app/document/recent_files.h"
 #include "core/base/files/file_suffix.h"
-#include "core/base/system/clock.h"
-#include "core/base/system/guarded.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
@@ -26,119 +22,52 @@ std::vector<PlannedStage> reading_plan() {
 }
 std::vector<PlannedStage> ply_plan() { return {{"read ply vertex", 2.0}, {"read ply face", 3.0}, {"open", 2.0}}; }
 
-double seconds_now() { return 1e-9 * static_cast<double>(SteadyClock().now()); }
-
-Result<void> check_file(const fs::path& file) {
-  DUBSAR_TRY(check_surface_file(file));
-  if (!names_a_surface(file))
-    return fail(ErrorKind::kUsage, "{} is no surface by its name, expected {}", file.string(), kSurfaceSuffixes);
-  return {};
-}
-
 }  // namespace
 
-/// One file that is read in a thread.
-class FileLoader::Reading final : public Progress {
- public:
-  Reading(fs::path file, std::size_t index)
-      : index_(index), file_(std::move(file)), whole_(lower_suffix(file_) == ".ply" ? ply_plan() : reading_plan()) {}
-  void start(const ReadSurface& read) {
-    if (!thread_.joinable())
-      thread_ = std::jthread([this, read] {
-        auto made = guarded(file_.string(),
-                            [&] { return read(file_, *this, [this](TriMesh mesh) { show_first(std::move(mesh)); }); });
-        const std::scoped_lock lock(mutex_);
-        made_ = std::move(made);
-        done_ = true;
-        changed_.notify_all();
-      });
-  }
-  ~Reading() override { leave(); }
-  void leave() {
-    cancel();
-    go_on();
+/// One file that is read: what its thread and the window's share.
+struct FileLoader::Reading {
+  Reading(fs::path path, std::size_t at) : index(at), file(std::move(path)) {}
+
+  /// Its thread. For as long as the first picture may take, that has the processor for itself.
+  void show_first(TriMesh mesh) {
+    constexpr std::chrono::seconds kLongest(3);
+    std::unique_lock lock(mutex);
+    if (seen) return;
+    coarse = std::move(mesh);
+    changed.wait_for(lock, kLongest, [this] { return seen; });
   }
   /// Waits no longer for the coarse surface to be seen.
   void go_on() {
-    const std::scoped_lock lock(mutex_);
-    seen_ = true;
-    changed_.notify_all();
-  }
-
-  std::size_t index() const noexcept { return index_; }
-  const fs::path& file() const noexcept { return file_; }
-  bool started() const { return thread_.joinable(); }
-  bool done() const {
-    const std::scoped_lock lock(mutex_);
-    return done_;
-  }
-  void wait() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return done_; });
-  }
-  Result<OpenedSurface> take() {
-    const std::scoped_lock lock(mutex_);
-    return std::move(*made_);
+    const std::scoped_lock lock(mutex);
+    seen = true;
+    changed.notify_all();
   }
   std::optional<TriMesh> take_coarse() {
-    const std::scoped_lock lock(mutex_);
-    return std::exchange(coarse_, std::nullopt);
-  }
-  Opening state() const {
-    const std::scoped_lock lock(mutex_);
-    return {file_.filename().string(), whole_.fraction(), whole_.remaining_s(seconds_now())};
+    const std::scoped_lock lock(mutex);
+    return std::exchange(coarse, std::nullopt);
   }
 
- protected:
-  void on_begin(std::string_view stage, std::int64_t total, std::string_view) override {
-    const std::scoped_lock lock(mutex_);
-    total_ = total;
-    whole_.begin(stage, seconds_now());
-  }
-  void on_advance(std::int64_t done) override {
-    const std::unique_lock lock(mutex_, std::try_to_lock);  // who works waits for nobody
-    if (lock && total_ > 0) whole_.advance(static_cast<double>(done) / static_cast<double>(total_), seconds_now());
-  }
-  void on_end() override {
-    const std::scoped_lock lock(mutex_);
-    whole_.end(seconds_now());
-  }
-
- private:
-  /// For as long as the first picture may take, it has the processor for itself.
-  void show_first(TriMesh mesh) {
-    constexpr std::chrono::seconds kLongest(3);
-    std::unique_lock lock(mutex_);
-    if (seen_) return;
-    coarse_ = std::move(mesh);
-    changed_.wait_for(lock, kLongest, [this] { return seen_; });
-  }
-
-  const std::size_t index_;
-  const fs::path file_;
-  mutable std::mutex mutex_;  // for those below
-  std::condition_variable changed_;
-  OverallProgress whole_;
-  std::int64_t total_ = 0;
-  std::optional<TriMesh> coarse_;
-  std::optional<Result<OpenedSurface>> made_;
-  bool done_ = false, seen_ = false;
-  std::jthread thread_;  // goes first
+  const std::size_t index;
+  const fs::path file;
+  bool started = false;                  // the window's thread
+  std::optional<OpenedSurface> surface;  // of the reading thread, until the job is done
+  std::mutex mutex;                      // for those below
+  std::condition_variable changed;
+  std::optional<TriMesh> coarse;
+  bool seen = false;
 };
 
 FileLoader::FileLoader(ReadSurface read, fs::path recent) : read_(std::move(read)), recent_(std::move(recent)) {}
 
-FileLoader::~FileLoader() {
-  for (const auto& each : left_) each->leave();
-}
+FileLoader::~FileLoader() { stop(); }
 
 void FileLoader::begin(std::size_t file) {
   stop();
-  reading_ = std::make_unique<Reading>(files_[file], file);
+  reading_ = std::make_shared<Reading>(files_[file], file);
 }
 
 Result<void> FileLoader::open(const std::vector<fs::path>& files) {
-  for (const fs::path& file : files) DUBSAR_TRY(check_file(file));
+  for (const fs::path& file : files) DUBSAR_TRY(check_surface_file(file));
   std::optional<std::size_t> first;
   for (const fs::path& file : files) {
     std::error_code error;
@@ -160,7 +89,7 @@ void FileLoader::has(const std::vector<fs::path>& files) {
 Result<void> FileLoader::step(int by) {
   const std::size_t count = files_.size();
   if (count < 2) return fail(ErrorKind::kUsage, "one file is open, there is no other to go to");
-  const std::size_t from = reading_ ? reading_->index() : shown_.value_or(0);
+  const std::size_t from = reading_ ? reading_->index : shown_.value_or(0);
   begin((from + (by > 0 ? 1 : count - 1)) % count);
   return {};
 }
@@ -172,24 +101,28 @@ bool FileLoader::go_on() {
 }
 
 bool FileLoader::stop() {
-  std::erase_if(left_, [](const auto& each) { return each->done(); });
   if (!reading_) return false;
-  reading_->leave();
-  if (reading_->started()) left_.push_back(std::move(reading_));
+  reading_->go_on();
+  job_.stop();
   reading_.reset();
   return true;
 }
 
 std::optional<Result<OpenedSurface>> FileLoader::take() {
-  if (!reading_ || !reading_->done()) return std::nullopt;
-  const std::unique_ptr<Reading> read = std::move(reading_);
-  Result<OpenedSurface> out = read->take();
+  const auto done = job_.take();
+  if (!done) return std::nullopt;
+  const std::shared_ptr<Reading> read = std::exchange(reading_, nullptr);
+  Result<OpenedSurface> out = tl::unexpected(Error{});
+  if (*done)
+    out = std::move(*read->surface);
+  else
+    out = tl::unexpected(done->error());
   if (out) {
-    shown_ = read->index();
-    if (const auto kept = remember_recent(recent_, read->file()); !kept) log_warning("{}", kept.error().message);
-  } else if (shown_ != read->index()) {  // it is not open
-    files_.erase(files_.begin() + static_cast<std::ptrdiff_t>(read->index()));
-    if (shown_ && *shown_ > read->index()) --*shown_;
+    shown_ = read->index;
+    if (const auto kept = remember_recent(recent_, read->file); !kept) log_warning("{}", kept.error().message);
+  } else if (shown_ != read->index) {  // it is not open
+    files_.erase(files_.begin() + static_cast<std::ptrdiff_t>(read->index));
+    if (shown_ && *shown_ > read->index) --*shown_;
   }
   return out;
 }
@@ -201,18 +134,27 @@ void FileLoader::coarse_was_shown() {
 }
 
 void FileLoader::start() {
-  if (reading_) reading_->start(read_);
+  if (!reading_ || reading_->started) return;
+  reading_->started = true;
+  const auto work = [reading = reading_, read = read_](Progress& progress) -> Result<void> {
+    DUBSAR_ASSIGN(reading->surface,
+                  read(reading->file, progress, [&](TriMesh mesh) { reading->show_first(std::move(mesh)); }));
+    return {};
+  };
+  job_.begin(reading_->file.filename().string(), work,
+             lower_suffix(reading_->file) == ".ply" ? ply_plan() : reading_plan());
 }
 
 void FileLoader::wait() {
   if (!reading_) return;
   reading_->go_on();  // nobody looks meanwhile
   start();
-  reading_->wait();
+  job_.wait();
 }
 
-std::optional<Opening> FileLoader::opening() const {
-  return reading_ ? std::optional(reading_->state()) : std::nullopt;
+std::optional<JobState> FileLoader::opening() const {
+  if (!reading_) return std::nullopt;
+  return reading_->started ? job_.state() : JobState{reading_->file.filename().string()};
 }
 
 }  // namespace dubsar::app

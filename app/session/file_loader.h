@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/document/opening.h"
+#include "app/session/background_job.h"
 #include "app/session/file_session.h"
 #include "app/session/session_work.h"
 #include "core/base/progress.h"
@@ -66,19 +66,19 @@ class FileLoader {
   const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
   std::optional<std::size_t> shown() const noexcept { return shown_; }  ///< of files()
   bool busy() const noexcept { return reading_ != nullptr; }
-  std::optional<Opening> opening() const;  ///< what is being read
+  std::optional<JobState> opening() const;  ///< what is being read
   const std::filesystem::path& recent_list() const noexcept { return recent_; }
 
  private:
-  class Reading;
+  struct Reading;
   void begin(std::size_t file);
 
   ReadSurface read_;
   std::filesystem::path recent_;
   std::vector<std::filesystem::path> files_;
   std::optional<std::size_t> shown_;
-  std::unique_ptr<Reading> reading_;
-  std::vector<std::unique_ptr<Reading>> left_;  ///< until they have noticed
+  std::shared_ptr<Reading> reading_;
+  BackgroundJob job_;  ///< that reads it; goes first
 };
 
 }  // namespace dubsar::app

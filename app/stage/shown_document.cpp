@@ -7,8 +7,8 @@
 namespace dubsar::app {
 namespace {
 
-constexpr Rgb8 kMutedClay{186, 172, 154}, kMutedStripe{168, 152, 132};  // of what is inferred, for visitors
-constexpr double kPartsGap = 0.1;  // between what is taken apart, of the object's height
+constexpr Hatch kMutedHatch{{186, 172, 154}, {168, 152, 132}};  // for visitors
+constexpr double kPartsGap = 0.1;                               // between what is taken apart, of the object's height
 
 /// A body with the pores in its clay. Both stand where they are moved to, besides what takes them apart.
 void dress(PartLook& look, const Part& part) {
@@ -69,6 +69,7 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
     style.ambient_occlusion = style.ambient_occlusion && choice.occlusion;
     style.radiance = std::max(style.radiance, choice.radiance);
     if (choice.colours == "blue-orange") style.field_colors = FieldColors::kBlueOrange;
+    style.hatch = stage.room.gallery ? kMutedHatch : choice.hatch == "blue" ? kBlueHatch : kSepiaHatch;
     style.section = choice.section && !document.parts.empty();  // what parts are made of is closed
     if (choice.back_faces == "tint") style.back_faces = BackFaces::kTint;
     if (choice.back_faces == "hide") style.back_faces = BackFaces::kCull;
@@ -77,11 +78,6 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
   };
   adapt(out.style);
   adapt(out.other.style);
-  for (Style* const style : {&out.style, &out.other.style}) {
-    if (!stage.room.gallery) break;
-    style->inferred_color = kMutedClay;
-    style->inferred_stripe = kMutedStripe;
-  }
   out.fog.strength = document.fog;
   for (const Cut& cut : document.clips)
     if (cut.on) out.clips.push_back({cut.normal * cut.distance_mm / glm::dot(cut.normal, cut.normal), -cut.normal});

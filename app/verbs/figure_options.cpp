@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "app/document/export_choice.h"
 #include "app/panels/panel_font.h"
 #include "app/publish/xmp.h"
 #include "core/edition/line_label.h"
@@ -76,8 +77,9 @@ void grow(Image& image, int rows, const Shading& shading) {
 
 void add_figure_options(Arguments& command, FigureOptions& options) {
   command.value("--dpi", options.dpi, "dots an inch: at life size, or of a figure of --width-mm (600)")
-      .range(20.0, 9600.0);
-  command.value("--width-mm", options.width_mm, "width of the printed figure, e.g. 85 for a column").range(5.0, 2000.0);
+      .range(kFigureDpi.least, kFigureDpi.most);
+  command.value("--width-mm", options.width_mm, "width of the printed figure, e.g. 85 for a column")
+      .range(kFigureMm.least, kFigureMm.most);
   command.value("--ground", options.ground, "white, grey, black, or none (transparent)")
       .one_of({"white", "grey", "black", "none"});
   command.flag("--scale-bar", options.scale_bar, "a bar with its length, below the object");

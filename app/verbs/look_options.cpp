@@ -25,6 +25,8 @@ void add_look_options(Arguments& command, LookOptions& options) {
                                {"cividis", FieldColors::kCividis},
                                {"grey", FieldColors::kGrey}},
                               "colours of msii and of the curvatures (designed)");
+  command.choice<Hatch>("--hatch", options.hatch, {{"sepia", kSepiaHatch}, {"blue", kBlueHatch}},
+                        "what the scan does not show is hatched in (sepia)");
   command.flag("--section", options.section, "what --cut goes through is filled, as solid clay is");
   command.flag("--legend", options.legend, "a legend with numbers, of msii and of the curvatures");
 }
@@ -32,6 +34,7 @@ void add_look_options(Arguments& command, LookOptions& options) {
 Result<void> apply(const LookOptions& options, Shading& shading) {
   shading.style.contrast *= 0.01 * options.strength;
   shading.style.field_colors = options.colours;
+  shading.style.hatch = options.hatch;
   shading.style.section = options.section;
   shading.style.radiance = std::max(shading.style.radiance, 0.01 * options.radiance);
   if (options.legend && !is_field(shading.style.map))
@@ -51,6 +54,7 @@ Result<void> apply(const LookOptions& options, Shading& shading) {
                 options.blend);
   DUBSAR_ASSIGN(const Shading other, shading_preset(options.blend.substr(0, at)));
   shading.other = {other.style, other.light, share};
+  shading.other.style.hatch = options.hatch;
   shading.other.style.field_colors = options.colours;
   shading.other.style.radiance = shading.style.radiance;
   shading.other.style.mark_inferred = shading.style.mark_inferred;

@@ -14,6 +14,7 @@ struct LookOptions {
   double radiance = 0.0;    ///< percent
   double strength = 100.0;  ///< percent
   FieldColors colours = FieldColors::kDesigned;
+  Hatch hatch = kSepiaHatch;
   bool legend = false, section = false;
 };
 

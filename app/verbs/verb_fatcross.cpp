@@ -8,6 +8,7 @@
 #include "app/cli/default_output.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/document/export_choice.h"
 #include "app/panels/panel_font.h"
 #include "app/publish/fat_cross.h"
 #include "app/publish/xmp.h"
@@ -231,7 +232,7 @@ Verb add_fatcross_verb(Arguments program) {
       "(bottom), _05 (left), _06 (right). Unless given: beside IN, NAME_fatcross.tif");
   command.value("--unit", options->unit, kUnitHelp);
   command.value("--part", options->part, "which part: tablet where there is one (auto), all, envelope, ...");
-  command.value("--dpi", options->dpi, "dots an inch at life size").range(50.0, 4800.0);
+  command.value("--dpi", options->dpi, "dots an inch at life size").range(kPlateDpi.least, kPlateDpi.most);
   command.choice<Rgb8>("--ground", options->ground,
                        {{"black", {0, 0, 0}}, {"white", {255, 255, 255}}, {"grey", {128, 128, 128}}},
                        "colour around the tablet (black)");

@@ -31,9 +31,11 @@ Style difference_style(const Style& before, double full_mm) {
   Style out = shading_preset("mean-curvature").value_or(Shading()).style;
   out.map = ColorMap::kDifference;
   out.contrast = field_scale(out).to / full_mm;
+  out.lit = true;  // a place is found by the signs around it
   out.ambient_occlusion = before.ambient_occlusion;
   out.mark_inferred = before.mark_inferred;
   out.field_colors = before.field_colors;
+  out.hatch = before.hatch;
   out.section = before.section;
   out.back_faces = before.back_faces;
   return out;

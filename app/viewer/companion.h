@@ -44,7 +44,7 @@ class CompanionTool final : public Tool {
   CompanionTool(ToolScene& scene, ReadSurface read, LabelFont& font);
   void update(TimestampNs now) override;
   void contribute(Shown& shown) override;
-  std::optional<Opening> opening() const { return loader_.opening(); }
+  std::optional<JobState> opening() const { return loader_.opening(); }
   /// Why what the document names cannot be shown.
   const std::optional<Error>& failed() const noexcept { return failed_; }
   void set_own_name(std::string name) { own_name_ = std::move(name); }

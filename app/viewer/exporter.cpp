@@ -1,7 +1,5 @@
 #include "app/viewer/exporter.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -10,7 +8,7 @@
 
 #include "app/document/document_file.h"
 #include "app/words/text.h"
-#include "core/base/files/atomic_file.h"
+#include "core/base/files/named_scratch.h"
 #include "core/base/system/child_process.h"
 #include "core/base/system/log.h"
 
@@ -75,17 +73,14 @@ Result<void> Exporter::begin(const Order& order, const ExportChoice& choice, con
   if (kind == kExportKinds.end()) return fail(ErrorKind::kUsage, "export: there is no {} to write", order.kind);
   const fs::path surface(order.surface);
   out_ = order.out.empty() ? (surface.parent_path() / surface.stem()).string() + std::string(kind->ending) : order.out;
-  const fs::path session = fs::temp_directory_path(ignored) / fmt::format("dubsar_export_{}.json", ::getpid());
-  DUBSAR_TRY(write_file_atomically(session, format_document(document)));
+  // One of its own for each export: a child that was stopped may live until the next one reads its session.
+  DUBSAR_ASSIGN(const std::shared_ptr<const NamedScratch> session,
+                NamedScratch::create("dubsar_export", ".json", format_document(document)));
   std::vector<std::string> words =
-      export_words(order.kind, {order.surface, session.string(), out_}, choice, document, order.side);
+      export_words(order.kind, {order.surface, session->path().string(), out_}, choice, document, order.side);
   words.insert(words.begin(), program);
-  job_.begin(tr_name("export_kind", order.kind), [words, session](Progress& progress) {
-    const auto done = run_child(words, progress);
-    std::error_code gone;
-    fs::remove(session, gone);
-    return done;
-  });
+  job_.begin(tr_name("export_kind", order.kind),
+             [words, session](Progress& progress) { return run_child(words, progress); }, {{"export", 1.0}});
   return {};
 }
 

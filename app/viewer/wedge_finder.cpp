@@ -5,6 +5,7 @@
 
 #include "app/document/document_file.h"
 #include "app/words/text.h"
+#include "core/mesh_io/mesh_io.h"
 
 namespace dubsar::app {
 namespace {
@@ -23,25 +24,10 @@ const Part* part_to_read(const std::vector<Part>& parts, const std::string& name
 
 }  // namespace
 
-TriMesh written_part(const TriMesh& mesh, std::uint8_t partitions) {
-  TriMesh out;
-  out.frame = mesh.frame;
-  out.positions = mesh.positions;
-  out.evidence = mesh.evidence;
-  out.partitions = mesh.partitions;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if ((partitions >> mesh.partition_of(t) & 1) == 0) continue;
-    out.triangles.push_back(mesh.triangles[t]);
-    if (!mesh.triangle_partition.empty()) out.triangle_partition.push_back(mesh.triangle_partition[t]);
-    if (!mesh.triangle_inferred.empty()) out.triangle_inferred.push_back(mesh.triangle_inferred[t]);
-  }
-  return out;
-}
-
 Result<void> WedgeFinder::begin(const TriMesh& mesh, const Document& document, const std::string& part) {
   const Part* const read = part_to_read(document.parts, part);
   if (read == nullptr && !part.empty()) return fail(ErrorKind::kUsage, "find_wedges: there is no part {}", part);
-  auto written = std::make_shared<const TriMesh>(written_part(mesh, read == nullptr ? 0xff : read->partitions));
+  auto written = std::make_shared<const TriMesh>(read == nullptr ? mesh : select_partitions(mesh, read->partitions));
   sought_ = std::make_shared<Sought>();
   sought_->part = read == nullptr ? std::string() : read->name;
   job_.begin(tr("wedge.looking"), [written, sought = sought_](Progress& progress) -> Result<void> {

@@ -11,9 +11,6 @@
 
 namespace dubsar::app {
 
-/// The triangles of these partitions (bit p: partition p), with what finding wedges needs of the rest.
-TriMesh written_part(const TriMesh& mesh, std::uint8_t partitions);
-
 /// One thread: that of the session.
 class WedgeFinder {
  public:

@@ -153,15 +153,17 @@ Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress
   return info;
 }
 
-TriMesh select_partition(const TriMesh& mesh, PartitionId partition) {
+TriMesh select_partitions(const TriMesh& mesh, std::uint8_t partitions) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  const auto chosen = [&](PartitionId id) { return id < PartitionTable::kMost && (partitions >> id & 1) != 0; };
   TriMesh part;
   part.frame = mesh.frame;
   part.provenance = mesh.provenance;
-  if (const Partition* const row = mesh.partitions.find(partition)) part.partitions = {*row};
+  for (const Partition& row : mesh.partitions)
+    if (chosen(row.id)) part.partitions.merge(PartitionTable{row});
   std::vector<std::uint32_t> moved(mesh.positions.size(), kUnused), kept;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (mesh.partition_of(t) == partition)
+    if (chosen(mesh.partition_of(t)))
       for (const std::uint32_t v : mesh.triangles[t]) moved[v] = 0;
   for (std::uint32_t v = 0; v < moved.size(); ++v)
     if (moved[v] != kUnused) {
@@ -169,11 +171,12 @@ TriMesh select_partition(const TriMesh& mesh, PartitionId partition) {
       kept.push_back(v);
     }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (mesh.partition_of(i) != partition) continue;
+    if (!chosen(mesh.partition_of(i))) continue;
     const Triangle& t = mesh.triangles[i];
     part.triangles.push_back({moved[t[0]], moved[t[1]], moved[t[2]]});
+    if (!mesh.triangle_partition.empty()) part.triangle_partition.push_back(mesh.triangle_partition[i]);
+    if (!mesh.triangle_inferred.empty()) part.triangle_inferred.push_back(mesh.triangle_inferred[i]);
   }
-  if (!mesh.triangle_partition.empty()) part.triangle_partition.assign(part.triangles.size(), partition);
   gather_vertices(mesh, kept, part);
   return part;
 }

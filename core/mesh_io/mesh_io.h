@@ -54,7 +54,7 @@ std::string_view mesh_format_name(MeshFormat format) noexcept;
 Result<MeshFormat> mesh_format_from_path(const std::filesystem::path& path);
 
 /// Writes the whole file or none; an old one stays until then. The suffix chooses the format. All parts go into one
-/// file: STL has no groups, so give it one part at a time (select_partition) where parts must stay watertight.
+/// file: STL has no groups, so give it one part at a time (select_partitions) where parts must stay watertight.
 /// Curvatures are written per file unit. Colours are those of the mesh, else shape colours shaded by ambient light.
 /// Errors: kUsage (suffix), kCannotCreate, kPermission, kIo, kCancelled, kInternal (arrays that contradict each other).
 Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
@@ -73,7 +73,7 @@ Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress,
 /// Reads the file and describes it.
 Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress, const MeshReadOptions& options = {});
 
-/// The triangles of one partition and the vertices they use, in the old order.
-TriMesh select_partition(const TriMesh& mesh, PartitionId partition);
+/// The triangles of these partitions (bit k: of id k) and the vertices they use, in the old order.
+TriMesh select_partitions(const TriMesh& mesh, std::uint8_t partitions);
 
 }  // namespace dubsar

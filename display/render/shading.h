@@ -43,6 +43,19 @@ enum class BackFaces {
   kCull,
 };
 
+/// The two colours of a hatching.
+struct Hatch {
+  Rgb8 ground, stripe;
+  /// Between both, for what cannot be hatched.
+  Rgb8 whole() const {
+    Rgb8 out{};
+    for (std::size_t c = 0; c < out.size(); ++c) out[c] = static_cast<std::uint8_t>((ground[c] + stripe[c]) / 2);
+    return out;
+  }
+  bool operator==(const Hatch&) const = default;
+};
+inline constexpr Hatch kSepiaHatch{{200, 170, 130}, {108, 74, 44}}, kBlueHatch{{122, 158, 204}, {38, 70, 128}};
+
 /// What a surface is made of, for the eye.
 struct Style {
   ColorMap map = ColorMap::kBlackWhite;
@@ -56,10 +69,10 @@ struct Style {
   Rgb8 base_color{203, 192, 178};  ///< of clay; lit meshes that carry colours have those in its place
   BackFaces back_faces = BackFaces::kShow;
   Rgb8 back_color{120, 60, 60};
-  /// Surface that the scan does not show (fill patches) is hatched in these two colours, never darker than a third of
-  /// full light. False: it looks like all the rest.
+  /// Surface that the scan does not show is hatched, never darker than a third of full light. False: it looks like all
+  /// the rest.
   bool mark_inferred = true;
-  Rgb8 inferred_color{122, 158, 204}, inferred_stripe{38, 70, 128};
+  Hatch hatch = kSepiaHatch;
   FieldColors field_colors = FieldColors::kDesigned;  ///< of maps of figures
   /// What planes cut through is filled and hatched, as if it were solid clay. Needs closed surfaces: behind a hole of
   /// one the filling reaches too far.

@@ -11,6 +11,7 @@
 #include "app/cli/default_output.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/document/export_choice.h"
 #include "app/verbs/edition/script_request.h"
 #include "core/base/files/file_suffix.h"
 #include "core/base/system/log.h"
@@ -163,7 +164,8 @@ Verb add_seal_verb(Arguments program) {
       .one_of({"impression", "stone"});
   command.value("--step", request->step_mm, "of the raster, mm (half of the surface's usual edge, .05 to .25)")
       .not_negative();
-  command.value("--dpi", request->dpi, "of a picture, which is at true scale (600)").range(50.0, 4800.0);
+  command.value("--dpi", request->dpi, "of a picture, which is at true scale (600)")
+      .range(kPlateDpi.least, kPlateDpi.most);
   command.flag("--no-hatch", request->no_hatch, "what no impression shows stays gray");
   command.value("--part", request->part,
                 "which part: the envelope's outside where there is one (auto), tablet, all, ...");

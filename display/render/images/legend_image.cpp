@@ -68,7 +68,7 @@ Image evidence_legend(const Style& style, const std::string& figures, LabelFont&
   for (int y = static_cast<int>(top); y < static_cast<int>(below); ++y)
     for (int x = static_cast<int>(left); x < static_cast<int>(left + swatch); ++x) {
       const bool dark = std::fmod((x + y) / stripe, 2.0) >= 1.0;
-      fill(out, x, y, x + 1, y + 1, dark ? style.inferred_stripe : style.inferred_color);
+      fill(out, x, y, x + 1, y + 1, dark ? style.hatch.stripe : style.hatch.ground);
     }
   write_text(out, font, words, text, (kPadEm + 0.9) * em, letter_px, ink.letters);
   write_text(out, font, figures, text, (kPadEm + kLineEm + 0.9) * em, letter_px, ink.letters);

@@ -117,8 +117,8 @@ StyleData style_data(const MeshItem& item, const SceneView& scene, const View& v
       std::cbrt(std::abs(glm::determinant(glm::dmat3(view.view_from_world * item.world_from_model))));
   out.blend = glm::vec4(
       glm::dvec4(item.other.share, shown_scale * (kSameBorder * longest + cell_mm), cell_mm == 0.0 ? 1.0 : 0.0, 0.0));
-  out.inferred_color = glm::vec4(linear_color(s.inferred_color), 1.0f);
-  out.inferred_stripe = glm::vec4(linear_color(s.inferred_stripe), 1.0f);
+  out.inferred_color = glm::vec4(linear_color(s.hatch.ground), 1.0f);
+  out.inferred_stripe = glm::vec4(linear_color(s.hatch.stripe), 1.0f);
   out.hatch = glm::vec4(glm::vec3(size * (kHatchStripes / longest)), 0.0f);
   out.background = scene.background.transparent ? glm::vec4(0.0f) : glm::vec4(linear_color(scene.background.color), 1);
   if (scene.fog.strength > 0) {

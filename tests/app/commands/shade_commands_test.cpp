@@ -34,6 +34,18 @@ TEST(ShadeCommands, RadianceAndColoursGoOnWithoutAnArgument) {
   EXPECT_FALSE(bench.editor.ui().legend);
 }
 
+TEST(Hatch, IsSepiaUnlessBlueIsAskedFor) {
+  Bench bench;
+  EXPECT_EQ(bench.editor.document().style.hatch, "");
+  for (const char* name : {"blue", "sepia", "blue"}) {
+    bench.run("hatch");
+    EXPECT_EQ(bench.editor.document().style.hatch, name);
+  }
+  bench.run("hatch sepia");
+  EXPECT_EQ(bench.editor.document().style.hatch, "sepia");
+  EXPECT_FALSE(bench.commands.run("hatch green", bench.editor));
+}
+
 TEST(BackFaces, GoThroughThreeWays) {
   Bench bench;
   for (const char* name : {"tint", "hide", "show"}) {

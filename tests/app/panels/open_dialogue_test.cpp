@@ -44,8 +44,8 @@ TEST(OpenDialogue, ReadingIsSaidInWords) {
   EXPECT_EQ(opening_words({"a.exa", 0.0, {}}), "reading a.exa");
   EXPECT_EQ(title_words("", {}), "");
   EXPECT_EQ(title_words("a.exa", {}), "a.exa");
-  EXPECT_EQ(title_words("", Opening{"a.exa", 0.434, 8.0}), "reading a.exa: 43 %") << "how long it takes is no name";
-  EXPECT_EQ(title_words("a.exa", Opening{"b.exa", 0.5, {}}), "a.exa, reading b.exa: 50 %");
+  EXPECT_EQ(title_words("", JobState{"a.exa", 0.434, 8.0}), "reading a.exa: 43 %") << "how long it takes is no name";
+  EXPECT_EQ(title_words("a.exa", JobState{"b.exa", 0.5, {}}), "a.exa, reading b.exa: 50 %");
   EXPECT_EQ(opening_words({"a.exa", 0.434, {}}), "reading a.exa: 43 %");
   EXPECT_EQ(opening_words({"a.exa", 0.5, 21.0}), "reading a.exa: 50 %, about 20 s to go");
 }

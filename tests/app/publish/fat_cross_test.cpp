@@ -191,8 +191,8 @@ TEST(FatCross, AStyleThatTellsAFigureHasItsScaleBelowTheRulerAndTheHatchItsMeani
       rows += bar ? 1 : 0;
     }
     EXPECT_NEAR(rows, 0.8 * letter, 2);
-    EXPECT_GT(count_of(sheet, style.inferred_color, plain.height), letter * letter);
-    EXPECT_GT(count_of(sheet, style.inferred_stripe, plain.height), letter * letter);
+    EXPECT_GT(count_of(sheet, style.hatch.ground, plain.height), letter * letter);
+    EXPECT_GT(count_of(sheet, style.hatch.stripe, plain.height), letter * letter);
     const Rgb8 ink = ground[0] == 0 ? Rgb8{255, 255, 255} : Rgb8{0, 0, 0};
     EXPECT_GT(count_of(sheet, ink, plain.height), letter * letter) << "words";
   }

@@ -25,7 +25,7 @@ TEST(SeenColours, AreThoseOfTheTableThatPicturesAreDrawnWith) {
     for (std::size_t v = 0; v < 3; ++v)
       for (std::size_t c = 0; c < 3; ++c)
         EXPECT_EQ(mesh.colors[v][c], table[mesh.ao[v] * std::size_t{128} + mesh.shape[v]][c]) << name << " " << v;
-    EXPECT_EQ(mesh.colors[3], style.mark_inferred ? style.inferred_color : mesh.colors[3]) << name;
+    EXPECT_EQ(mesh.colors[3], style.mark_inferred ? style.hatch.whole() : mesh.colors[3]) << name;
   }
 }
 

@@ -178,7 +178,7 @@ TEST_F(DrawnWords, FilesAndCommandsAreAskedForInTheLanguage) {
   state.files.listing = FolderListing{"/QXZ", {{"QXZ", true, 0}, {"QXZ.exa", false, 2'901'985}}, {}};
   check(panels(state, 1600.0f, 900.0f), "open dialogue", 1600.0f);
   state.files.listing->entries.clear();
-  state.files.opening = Opening{"QXZ.exa", 0.4, 100.0};
+  state.files.opening = JobState{"QXZ.exa", 0.4, 100.0};
   check(panels(state, 1600.0f, 900.0f), "empty folder, and a file that is read", 1600.0f);
   state.ui.choosing.open = false;
   state.files.opening.reset();

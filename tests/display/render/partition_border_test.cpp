@@ -96,7 +96,7 @@ TEST(PartitionBorder, FilesKeepTheLabelOfEveryTriangle) {
   }
   std::size_t selected = 0;
   for (const Partition& p : mesh.partitions) {
-    const TriMesh part = select_partition(mesh, p.id);
+    const TriMesh part = select_partitions(mesh, static_cast<std::uint8_t>(1u << p.id));
     selected += part.triangles.size();
     for (const auto& [corners, label] : labels_of(part)) ASSERT_EQ(labels.at(corners), label);
   }

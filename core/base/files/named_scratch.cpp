@@ -1,0 +1,40 @@
+#include "core/base/files/named_scratch.h"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace dubsar {
+namespace fs = std::filesystem;
+
+Result<std::shared_ptr<const NamedScratch>> NamedScratch::create(std::string_view stem, std::string_view suffix,
+                                                                 std::string_view text) {
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  if (error) return fail_errno(error.value(), "cannot find the folder for temporary files");
+  std::string name = (folder / fmt::format("{}_XXXXXX{}", stem, suffix)).string();
+  const int descriptor = ::mkostemps(name.data(), static_cast<int>(suffix.size()), O_CLOEXEC);
+  if (descriptor < 0) return fail_errno(errno, fmt::format("cannot create {}", name));
+  std::shared_ptr<const NamedScratch> out(new NamedScratch(name));
+  int wrong = 0;
+  while (!text.empty() && wrong == 0) {
+    const ::ssize_t count = ::write(descriptor, text.data(), text.size());
+    if (count >= 0)
+      text.remove_prefix(static_cast<std::size_t>(count));
+    else if (errno != EINTR)
+      wrong = errno;
+  }
+  if (::close(descriptor) != 0 && wrong == 0) wrong = errno;
+  if (wrong != 0) return fail_errno(wrong, fmt::format("cannot write {}", name));
+  return out;
+}
+
+NamedScratch::~NamedScratch() {
+  std::error_code gone;
+  fs::remove(path_, gone);
+}
+
+}  // namespace dubsar
