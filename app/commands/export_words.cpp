@@ -53,6 +53,7 @@ std::vector<std::string> export_words(std::string_view kind, const ExportFiles& 
              "--light",    fmt::format("{:.1f},{:.1f}", document.light.azimuth_deg, document.light.elevation_deg)};
     if (choice.scale_bar) words.emplace_back("--scale-bar");
     if (choice.labels) words.emplace_back("--labels");
+    if (document.style.hatch == "blue") append(words, {"--hatch", "blue"});
     append(words, shown_parts(document));
   } else if (kind == "film") {
     words = {"animate", files.session, files.surface};

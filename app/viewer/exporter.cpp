@@ -32,9 +32,12 @@ std::optional<double> percent_in(const std::string& said) {
 }
 
 std::string sentence_of(const std::string& out, const std::string& err, int code) {
+  constexpr std::string_view kOption = "-o,--output ";  // nobody typed it
   const json answer = json::parse(out, nullptr, false);
-  if (answer.is_object() && answer.contains("error") && answer["error"].is_object())
-    return answer["error"].value("message", "");
+  if (answer.is_object() && answer.contains("error") && answer["error"].is_object()) {
+    const std::string message = answer["error"].value("message", "");
+    return message.starts_with(kOption) ? message.substr(kOption.size()) : message;
+  }
   return fmt::format("it ended with code {}: {}", code, err.substr(0, err.find('\n')));
 }
 
@@ -88,7 +91,7 @@ std::optional<std::string> Exporter::ended() {
   const auto done = job_.take();
   if (!done) return std::nullopt;
   if (*done) return tr("say.written", out_);
-  log_warning("{}: {}", out_, done->error().message);
+  log_warning("export: {}", done->error().message);
   return done->error().message;
 }
 
