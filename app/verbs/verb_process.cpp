@@ -137,7 +137,7 @@ std::vector<PlannedStage> plan_of(const ProcessRequest& options) {
   run.artefacts = options.pipeline.artefacts == Artefacts::kAuto;
   run.fill_holes = !options.without.holes;
   run.contact = !options.without.contact;
-  run.passes = options.pipeline.denoise.iterations;
+  run.noise.passes = options.pipeline.denoise.iterations;
   run.rays =
       options.without.ao ? 0.0 : options.light.rays * (options.light.engine == OcclusionEngine::kBricks ? 1.0 : 2.4);
   std::vector<PlannedStage> plan;

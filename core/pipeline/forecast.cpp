@@ -91,6 +91,12 @@ Result<Forecast> forecast(SlabSource& scan, const RunShape& wanted, Detail detai
   DUBSAR_ASSIGN(DenoisedGrid denoised, denoise(std::move(sampled), "sample", {}, {.left_out = left_out}, apart));
   DUBSAR_ASSIGN(const Threshold threshold, choose_threshold(std::nullopt, denoised.steps.back().estimates));
 
+  if (const Estimates& left = denoised.steps.back().estimates; !run.half && run.noise.passes > 0) {
+    DUBSAR_ASSIGN(const std::optional<EdgeSpread> blur,
+                  measure_edge_spread(denoised.grid, left.m_lo, left.m_hi, silent));
+    run.noise.made_fair = blur && fairing_share(*blur, left.snr_db) > 0.0f;
+  }
+
   const Dims part = denoised.grid.dims();
   const std::int64_t depth = std::min(part.z, kGroupAfter);
   std::int64_t cells = 0, layers = 0;

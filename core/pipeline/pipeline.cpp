@@ -70,7 +70,7 @@ RunShape wanted_shape(const PipelineOptions& options) {
   shape.artefacts = options.artefacts == Artefacts::kAuto;
   shape.fill_holes = options.fill_holes;
   shape.contact = options.contact.has_value();
-  shape.passes = options.denoise.iterations;
+  shape.noise.passes = options.denoise.iterations;
   shape.rays = options.occlusion ? options.occlusion->rays : 0.0;
   return shape;
 }

@@ -60,16 +60,25 @@ double bytes_to_straighten(const RunShape& r) {
   return r.straight ? 256.0 * widest * widest + (r.half ? stored(half_points(r), r.half_place) : 0.0) : 0.0;
 }
 
+/// A mesh and moves of its vertices; then its places, moves and the first samples, while there are new ones. Whether it
+/// is needed is known when the noise is: memory is kept for it.
+double bytes_to_make_fair(const RunShape& r) {
+  return r.noise.passes > 0 ? std::max(92.0 * r.vertices, 28.0 * r.vertices + bytes_of(Value::kSamples, r)) : 0.0;
+}
+
 /// Local levels are sums in cells of 8^3 and slabs of 24 slices. The halved grid is gone before the bricks near the
 /// surface are there.
 double bytes_to_find(const RunShape& r) {
   const double levels = 0.25 * grid_points(r) + 96.0 * static_cast<double>(grid_of(r.scan, r.half).slice());
-  return r.half ? levels : std::max(4.0 * sampled(r), 4.0 * band_points(r) + levels - bytes_of(Value::kHalf, r));
+  if (r.half) return levels;
+  return std::max(4.0 * sampled(r),
+                  4.0 * band_points(r) + std::max(levels, bytes_to_make_fair(r)) - bytes_of(Value::kHalf, r));
 }
 double seconds_to_find(const RunShape& r) {
   if (r.half) return 4e-9 * half_points(r);
   const double filtered = kBandEffort * band_points(r) + sampled(r);
-  return scan_points(r) * r.read_s + 4e-9 * (half_points(r) + r.passes * filtered + band_points(r));
+  const double fair = r.noise.made_fair ? 1.7e-6 * r.vertices + 4e-9 * band_points(r) : 0.0;
+  return scan_points(r) * r.read_s + 4e-9 * (half_points(r) + r.noise.passes * filtered + band_points(r)) + fair;
 }
 
 double bytes_to_separate(const RunShape& r) { return 5.5 * sign_bytes(r) + 137.0 * r.vertices; }
@@ -101,7 +110,7 @@ constexpr std::array<StagePlan, kStages> kRunPlan = {{
      bytes_to_straighten, [](const RunShape& r) { return 0.2 + (r.straight ? r.straight->core_s : 0.0); },
      {{{"rays", 0.2}, {"rings", 0.1}, {"straighten", 0.7}}}},
     {RunStage::kDenoise, "while noise is filtered", kNothing | Value::kHalf, kNothing | Value::kHalf, false, 0.1, always,
-     nothing, [](const RunShape& r) { return 4e-9 * r.passes * half_points(r); },
+     nothing, [](const RunShape& r) { return 4e-9 * r.noise.passes * half_points(r); },
      {{{"estimate", 0.1}, {"denoise", 0.35}, {"estimate", 0.1}, {"denoise", 0.35}, {"estimate", 0.1}}}},
     {RunStage::kSurface, "while the surface is found", kNothing | Value::kScan | Value::kHalf | Value::kStraight,
      kNothing | Value::kSamples, false, 0.1, always, bytes_to_find, seconds_to_find,

@@ -47,6 +47,12 @@ struct StraightPlan {
   double core_s = 0.0;                   ///< seconds of one core
 };
 
+/// What is done about noise.
+struct NoisePlan {
+  int passes = 2;          ///< of the denoising filter
+  bool made_fair = false;  ///< what is left of it moves the surface, which is made fair and extracted anew
+};
+
 /// All that the cost of a run depends on.
 struct RunShape {
   Dims scan = {};
@@ -58,9 +64,9 @@ struct RunShape {
   std::optional<StraightPlan> straight;       ///< and found: rays are straightened
   bool fill_holes = true, contact = true;     ///< holes are filled, where tablet and envelope touch is traced
   double layer_bytes = 0.0;                   ///< of a layer of chunks that the scan's source keeps
-  int passes = 2;                             ///< of the denoising filter
-  double rays = 160.0;                        ///< of ambient light a vertex; 0: none
-  double read_s = 1.1e-9;                     ///< seconds of one core for a voxel that is read
+  NoisePlan noise;
+  double rays = 160.0;     ///< of ambient light a vertex; 0: none
+  double read_s = 1.1e-9;  ///< seconds of one core for a voxel that is read
   int threads = 2;
   double slowness = 1.0;  ///< seconds of this machine for one of the table's machine
 };

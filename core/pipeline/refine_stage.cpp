@@ -88,10 +88,12 @@ Result<RefinedSurface> refine(SlabSource& scan, GridStore& half, double half_noi
     DUBSAR_ASSIGN(sampled.blur, measure_edge_spread(around, estimates.m_lo, estimates.m_hi, run.progress));
     if (sampled.blur) {
       sampled.sharpen *= static_cast<float>(std::min(sampled.blur->variance / kGaussVariance, 1.0));
+      sampled.fairing = fairing_share(*sampled.blur, estimates.snr_db);
       sampled.sharpen_wide = wide_sharpening(sampled.blur->variance, estimates.snr_db, sampled.sharpen);
     }
-    log_debug("sharpen: edges of {:.2f} voxel2, {:.1f} dB: {:.2f}, wide {:.2f}",
-              sampled.blur ? sampled.blur->variance : NAN, estimates.snr_db, sampled.sharpen, sampled.sharpen_wide);
+    log_debug("sharpen: edges of {:.2f} voxel2, {:.1f} dB: {:.2f}, wide {:.2f}; fair {:.2f}",
+              sampled.blur ? sampled.blur->variance : NAN, estimates.snr_db, sampled.sharpen, sampled.sharpen_wide,
+              sampled.fairing);
   }
   filters.sharpen = sampled.sharpen;
   filters.sharpen_wide = sampled.sharpen_wide;

@@ -32,6 +32,7 @@ struct VertexMoves {
 struct SurfaceDecisions {
   float sharpen = 0.0f;               ///< amount that was used
   float sharpen_wide = 0.0f;          ///< the same, against a Gauss of 7 voxels
+  float fairing = 0.0f;               ///< share of what noise and blur did to the surface that was taken back
   NoiseCavities noise;                ///< that became clay
   std::optional<LocalLevels> levels;  ///< where they were measured
 };

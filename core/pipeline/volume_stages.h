@@ -107,6 +107,7 @@ struct SampledSurface {
   SurfaceSamples samples;
   float sharpen = 0.0f;               ///< amount that was used
   float sharpen_wide = 0.0f;          ///< the same, against a Gauss of 7 voxels
+  float fairing = 0.0f;               ///< share of what noise and blur did to the surface that was taken back
   std::optional<EdgeSpread> blur;     ///< of the grid before it was sharpened, where that was decided by it
   NoiseCavities noise;                ///< that became clay
   std::optional<LocalLevels> levels;  ///< where they were measured
@@ -116,6 +117,10 @@ struct SampledSurface {
 /// How much sharpening the noise allows, in dB of what filters left.
 float sharpen_amount(double snr_db);
 
+/// How much of fair_moves.h a surface needs, 0 to 1, by what noise moves it: that of voxels (`snr_db`, dB of what
+/// filters left) over the slope of an edge of Gaussian blur, grid steps.
+float fairing_share(const EdgeSpread& blur, double snr_db);
+
 /// What is known of a grid whose surface is to be found.
 struct GridFacts {
   const Threshold& threshold;
@@ -124,8 +129,8 @@ struct GridFacts {
   std::vector<float> constants;  ///< values that stand where nothing was read
 };
 
-/// Samples the isosurface, half way between the levels beside it, and makes cavities of noise clay. One record,
-/// "extract".
+/// Samples the isosurface, half way between the levels beside it, anew where it is to be made fair (sampled.fairing and
+/// .blur), and makes cavities of noise clay. One record, "extract".
 Result<void> extract_surface(SlabSource& source, const GridFacts& facts, const SampleOptions& options,
                              SampledSurface& sampled, StageRun run);
 

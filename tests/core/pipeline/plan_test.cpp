@@ -76,6 +76,20 @@ TEST(Plan, AGridOnTheDiskTakesNoMemoryAndAStraightenedOneStaysUntilTheContactIsT
   }
 }
 
+// The mesh of a surface that is made fair lies beside the bricks near it, whether it is or not; time is its own.
+TEST(Plan, ASurfaceThatIsMadeFairTakesTimeAndMemoryOnlyWhereItIsFound) {
+  RunShape run = paper(false, 22.2e6), noisy = run, unfiltered = run;
+  noisy.noise.made_fair = true;
+  unfiltered.noise.passes = 0;
+  for (const StagePlan& stage : kRunPlan) {
+    const bool finds = stage.stage == RunStage::kSurface;
+    EXPECT_EQ(stage.core_s(noisy) > stage.core_s(run), finds) << stage.when;
+    EXPECT_EQ(bytes_while(stage, noisy), bytes_while(stage, run)) << stage.when;
+    EXPECT_EQ(bytes_while(stage, run) > bytes_while(stage, unfiltered), finds) << stage.when;
+  }
+  EXPECT_EQ(cost_of(run).bytes, cost_of(unfiltered).bytes);  // other stages need more
+}
+
 TEST(Plan, TheRefusalSaysWhatForWhenAndHowMuch) {
   const auto fits = check_fits(paper(false, 22.2e6), 1ULL << 30);
   ASSERT_FALSE(fits);
