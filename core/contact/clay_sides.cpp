@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <glm/common.hpp>
-#include <utility>
 
-#include "core/base/numbers/disjoint_sets.h"
-#include "core/base/system/parallel_gather.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {
@@ -21,9 +19,7 @@ constexpr float kWall = 0.4f;
 /// Cost of being on the wrong side of the patch, for each step from it: it holds the sheet where nothing is seen.
 constexpr float kPull = 0.006f;
 constexpr std::int32_t kHard = 1 << 28;
-constexpr std::int64_t kNodeGrain = 1 << 14;
-
-constexpr std::array<glm::ivec3, 3> kAxes{glm::ivec3(1, 0, 0), glm::ivec3(0, 1, 0), glm::ivec3(0, 0, 1)};
+constexpr std::int64_t kBrickGrain = 1 << 8;
 
 std::int32_t capacity(float faces) {
   return static_cast<std::int32_t>(std::clamp(std::lround(kUnit * faces), std::int64_t{-kHard}, std::int64_t{kHard}));
@@ -39,55 +35,42 @@ bool at_border(const ContactBand& band, const ContactBand::Node& node) {
   return node.distance > band.reach_at(node.height) - 1.0f && std::abs(node.height) > 0.97f * node.distance;
 }
 
-/// visit(node, its upper neighbour, axis) for all that are neighbours in the band.
 template <class Visit>
-void each_face_of(const ContactBand& band, std::uint32_t n, const Visit& visit) {
-  for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    const std::uint32_t m = band.at(band.point(n) + kAxes[axis]);
-    if (m != ContactBand::kNone) visit(n, m, axis);
-  }
+void each_brick(const BandBricks& bricks, const Visit& visit) {
+  parallel_for(static_cast<std::int64_t>(bricks.lattice().count()) - 1, kBrickGrain,
+               [&](std::int64_t i) { visit(static_cast<std::uint32_t>(i + 1)); });
 }
 
 /// Islands of one clay in the other do not exist: they take the side of what is around them. Crumbs that air cuts off
-/// from both are the tablet's; nobody asks.
-void adopt_islands(const ContactBand& band, std::vector<ClaySide>& side, const std::vector<bool>& certain) {
-  const auto count = static_cast<std::int64_t>(band.nodes.size());
-  const auto each_node = [&](const auto& visit) {
-    parallel_for(count, kNodeGrain, [&](std::int64_t n) { visit(static_cast<std::uint32_t>(n)); });
-  };
-  ConcurrentSets pieces(band.nodes.size());  // of one side
-  each_node([&](std::uint32_t node) {
-    each_face_of(band, node, [&](std::uint32_t n, std::uint32_t m, std::uint32_t) {
-      if (side[n] == side[m]) pieces.join(n, m);
-    });
+/// from both are the tablet's; nobody asks. `tablet`: of `side`.
+void adopt_islands(const ContactBand& band, const BandBricks& bricks, const BrickBits& certain, BrickBits& tablet,
+                   std::vector<ClaySide>& side) {
+  BrickBits loose = bricks.in_band();
+  std::array<BrickBits, 2> held;
+  parallel_for(2, 1, [&](std::int64_t i) {
+    BrickBits within = tablet;
+    if (i == 1)
+      for (std::size_t b = 0; b < within.size(); ++b) within[b] = loose[b] & ~within[b];
+    held[static_cast<std::size_t>(i)] = bricks.reached(within, certain);
   });
-  std::vector<std::uint8_t> held(band.nodes.size(), 0);  // first the pieces, by their roots
-  each_node([&](std::uint32_t n) {
-    if (certain[n]) std::atomic_ref(held[pieces.root(n)]).store(1, std::memory_order_relaxed);
-  });
-  using Nodes = std::vector<std::uint32_t>;
-  const Nodes islands =
-      parallel_gather<std::uint32_t>(count, kNodeGrain, [&](std::int64_t begin, std::int64_t end, Nodes& found) {
-        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
-          if (held[pieces.root(n)] == 0) found.push_back(n);
-      });
-  std::fill(held.begin(), held.end(), 1);
-  for (const std::uint32_t n : islands) held[n] = 0;
-  Nodes queue;  // what lies around an island is of the other side, all of it
+  for (std::size_t b = 0; b < loose.size(); ++b) loose[b] &= ~(held[0][b] | held[1][b]);
+  const std::vector<std::uint32_t> islands = bricks.nodes_of(loose);
+  std::vector<std::uint32_t> queue;  // what lies around an island is of the other side, all of it
+  const auto is_loose = [&](std::uint32_t n) { return has_bit(loose, bricks.point(n)); };
   const auto adopt_beside = [&](std::uint32_t n) {
     each_beside(band.point(n), [&](const glm::ivec3& q) {
       const std::uint32_t m = band.at(q);
-      if (m == ContactBand::kNone || held[m] != 0) return;
+      if (m == ContactBand::kNone || !is_loose(m)) return;
       side[m] = side[n];
-      held[m] = 1;
+      set_bit(loose, bricks.point(m), false);
       queue.push_back(m);
     });
   };
   for (const std::uint32_t n : islands) {
-    if (held[n] != 0) continue;
+    if (!is_loose(n)) continue;
     each_beside(band.point(n), [&](const glm::ivec3& q) {
       const std::uint32_t m = band.at(q);
-      if (m != ContactBand::kNone && held[m] != 0) adopt_beside(m);
+      if (m != ContactBand::kNone && !is_loose(m)) adopt_beside(m);
     });
     for (; !queue.empty();) {
       const std::uint32_t next = queue.back();
@@ -95,125 +78,174 @@ void adopt_islands(const ContactBand& band, std::vector<ClaySide>& side, const s
       adopt_beside(next);
     }
   }
-  for (const std::uint32_t n : islands)
-    if (held[n] == 0) side[n] = ClaySide::kTablet;
+  for (const std::uint32_t n : islands) {
+    if (is_loose(n)) side[n] = ClaySide::kTablet;
+    set_bit(tablet, bricks.point(n), side[n] == ClaySide::kTablet);
+  }
 }
 
 /// Four points of a grid face that belong to tablet, envelope, tablet, envelope in turn would pinch the contact: the
 /// lower one of the envelope's goes to the tablet.
-bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
+bool unpinch(const ContactBand& band, const BandBricks& bricks, BrickBits& tablet, std::vector<ClaySide>& side) {
   constexpr std::uint32_t kNone = ContactBand::kNone;
-  const auto pinch_at = [&](std::uint32_t n, std::size_t a) {  // the point of the envelope that goes
-    const glm::ivec3 p = band.point(n), u = kAxes[a], v = kAxes[(a + 1) % 3];
-    const std::uint32_t right = band.at(p + u);
-    if (right == kNone || side[n] == side[right]) return kNone;
-    const std::uint32_t across = band.at(p + u + v), up = band.at(p + v);
-    if (across == kNone || up == kNone || side[n] != side[across] || side[right] != side[up]) return kNone;
+  const auto pinch_at = [&](std::uint32_t n, int a) {  // the point of the envelope that goes
+    const glm::ivec3 p = band.point(n), u = unit_step(a), v = unit_step((a + 1) % 3);
+    const std::uint32_t right = band.at(p + u), across = band.at(p + u + v), up = band.at(p + v);
+    if (right == kNone || across == kNone || up == kNone) return kNone;
+    if (side[n] == side[right] || side[n] != side[across] || side[right] != side[up]) return kNone;
     const std::uint32_t one = side[n] == ClaySide::kEnvelope ? n : right,
                         other = side[n] == ClaySide::kEnvelope ? across : up;
     return band.nodes[one].height <= band.nodes[other].height ? one : other;
   };
-  using Nodes = std::vector<std::uint32_t>;
-  const Nodes pinched = parallel_gather<std::uint32_t>(
-      static_cast<std::int64_t>(band.nodes.size()), kNodeGrain,
-      [&](std::int64_t begin, std::int64_t end, Nodes& found) {
-        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
-          if (pinch_at(n, 0) != kNone || pinch_at(n, 1) != kNone || pinch_at(n, 2) != kNone) found.push_back(n);
-      });
+  const std::vector<std::uint32_t> pinched = bricks.nodes_of(bricks.pinched(tablet));
   for (const std::uint32_t n : pinched)
-    for (std::size_t a = 0; a < 3; ++a)
-      if (const std::uint32_t of_envelope = pinch_at(n, a); of_envelope != kNone) side[of_envelope] = ClaySide::kTablet;
+    for (int a = 0; a < 3; ++a)
+      if (const std::uint32_t of_envelope = pinch_at(n, a); of_envelope != kNone) {
+        side[of_envelope] = ClaySide::kTablet;
+        set_bit(tablet, bricks.point(of_envelope), true);
+      }
   return !pinched.empty();
 }
 
-/// Nodes over the same piece of the patches: flow runs across the band, and most of it stays in one block. With blocks
-/// twice as wide threads wait for each other: a quarter more by the clock on two cores.
-LatticeCut cut_in_blocks(const ContactBand& band) {
-  constexpr float kBlockSide = 32.0f;
-  const Dims d = band.node_at.dims();
-  const auto along = [](std::int64_t n) { return static_cast<std::uint32_t>(static_cast<float>(n) / kBlockSide) + 1; };
-  const std::uint32_t x = along(d.x), y = along(d.y), z = along(d.z);
-  std::vector<std::uint32_t> block(band.nodes.size());
-  std::vector<float> height(block.size());
-  parallel_for(static_cast<std::int64_t>(block.size()), kNodeGrain, [&](std::int64_t i) {
-    const auto n = static_cast<std::size_t>(i);
-    const glm::uvec3 cube(glm::max(band.samples[band.nodes[n].sample].position, glm::vec3(0.0f)) / kBlockSide);
-    block[n] = (std::min(cube.z, z - 1) * y + std::min(cube.y, y - 1)) * x + std::min(cube.x, x - 1);
-    height[n] = band.nodes[n].height;
-  });
-  return {std::move(block), x * y * z, height};
-}
+/// What the cost of faces is made of, at the points of a brick and those beside it up the axes.
+struct FacePoint {
+  glm::vec3 across{0.0f};  ///< how far the normal lies along each axis
+  float strength = 0.0f;
+  bool there = false;
+};
 
-/// Of the face between two nodes that are neighbours along an axis.
-std::int32_t cost_of_face(const ContactBand& band, std::uint32_t n, std::uint32_t m, std::uint32_t axis,
-                          float strength) {
-  const auto a = static_cast<glm::length_t>(axis);
-  const float along = 0.5f * (std::abs(band.normal(n)[a]) + std::abs(band.normal(m)[a]));
-  const float face = along + kWall * (1.0f - along);
-  return 1 + static_cast<std::int32_t>(std::lround(kUnit * face * cost_of(strength)));
-}
+class BrickFaces {
+ public:
+  BrickFaces(const ContactBand& band, const Dips& dips, const BandBricks& bricks, std::uint32_t brick) {
+    const BandBricks::Nodes own = bricks.nodes(brick);
+    const auto add = [&](std::uint32_t n, int x, int y, int z) {
+      if (n != ContactBand::kNone) at(x, y, z) = {glm::abs(band.normal(n)), dips.strength[n], true};
+    };
+    for (int k = 0; k < kPoints; ++k) add(own[static_cast<std::size_t>(k)], k & 3, k >> 2 & 3, k >> 4);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint32_t above = bricks.lattice().brick_beside(brick, 2 * static_cast<std::uint32_t>(axis));
+      if (above == 0) continue;
+      const BandBricks::Nodes beside = bricks.nodes(above);
+      const int u = 1 << 2 * ((axis + 1) % 3), v = 1 << 2 * ((axis + 2) % 3);
+      for (int i = 0; i < kEdge; ++i)
+        for (int j = 0; j < kEdge; ++j) {
+          const int k = i * u + j * v;
+          const glm::ivec3 p = glm::ivec3(k & 3, k >> 2 & 3, k >> 4) + kEdge * unit_step(axis);
+          add(beside[static_cast<std::size_t>(k)], p.x, p.y, p.z);
+        }
+    }
+  }
+  /// visit(point in the brick, axis, capacity of the face to the point above).
+  template <class Visit>
+  void each(const Visit& visit) {
+    for (std::uint32_t k = 0; k < LatticeBricks::kPoints; ++k) {
+      const glm::ivec3 p(k & 3, k >> 2 & 3, k >> 4);
+      const FacePoint& a = at(p.x, p.y, p.z);
+      if (!a.there) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        const glm::ivec3 q = p + unit_step(axis);
+        const FacePoint& b = at(q.x, q.y, q.z);
+        if (!b.there) continue;
+        const float along = 0.5f * (a.across[axis] + b.across[axis]), face = along + kWall * (1.0f - along);
+        visit(k, static_cast<std::uint32_t>(axis),
+              1 + rounded(kUnit * face * cost_of(0.5f * (a.strength + b.strength))));
+      }
+    }
+  }
+
+ private:
+  static constexpr int kEdge = LatticeBricks::kEdge, kPoints = LatticeBricks::kPoints;
+  static std::int32_t rounded(float positive) {  // as std::lround
+    return static_cast<std::int32_t>(static_cast<double>(positive) + 0.5);
+  }
+  FacePoint& at(int x, int y, int z) {
+    return points_[static_cast<std::size_t>((z * (kEdge + 1) + y) * (kEdge + 1) + x)];
+  }
+  std::array<FacePoint, (kEdge + 1) * (kEdge + 1) * (kEdge + 1)> points_{};
+};
 
 }  // namespace
-
-void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side) {
-  constexpr int kMostRounds = 20;  // each round removes pinches and seldom makes one
-  for (int round = 0; round < kMostRounds && unpinch(band, side); ++round) {
-  }
-}
 
 ClayDivision::ClayDivision(const ClayEvidence& evidence)
     : band_(evidence.band),
       whole_(evidence.whole),
-      cut_(cut_in_blocks(evidence.band)),  // source side: tablet
-      certain_(evidence.band.nodes.size(), false) {
-  const Dips& dips = evidence.dips;
-  const auto count = static_cast<std::uint32_t>(band_.nodes.size());
-  std::vector<std::int32_t> wish(count);  // > 0: tablet
-  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
-    const auto n = static_cast<std::size_t>(i);
-    const ContactBand::Node& node = band_.nodes[n];
-    const bool known = height_tells(band_, node);
-    if (known && at_border(band_, node))
-      wish[n] = node.height < 0.0f ? kHard : -kHard;
-    else
-      wish[n] = capacity((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - (known ? kPull * node.height : 0.0f));
-  });
-  for (std::uint32_t n = 0; n < count; ++n) certain_[n] = std::abs(wish[n]) == kHard;
-  for (const SurfaceHint& hint : evidence.hints) {
-    const std::int32_t sense = hint.side == ClaySide::kTablet ? 1 : -1;
-    if (hint.weight >= kCertain) {
-      if (!certain_[hint.node]) wish[hint.node] = sense * kHard;
-      certain_[hint.node] = true;
-    } else if (!certain_[hint.node]) {
-      wish[hint.node] += sense * capacity(hint.weight);
+      bricks_(evidence.band),
+      cut_(bricks_.lattice(), bricks_.starts()),
+      certain_(bricks_.lattice().count(), 0) {
+  add_points(evidence);
+  add_hints(evidence.hints);
+  add_steps(evidence.dips);
+  for (const ClayCavity& cavity : whole_)
+    for (std::size_t i = 1; i < cavity.size(); ++i)
+      cut_.tie(bricks_.point(cavity[i - 1]), bricks_.point(cavity[i]), kHard);
+}
+
+void ClayDivision::add_points(const ClayEvidence& evidence) {
+  each_brick(bricks_, [&](std::uint32_t b) {
+    std::uint32_t point = LatticeBricks::kPoints * b;
+    for (const std::uint32_t n : bricks_.nodes(b)) {
+      const std::uint32_t p = point++;
+      if (n == ContactBand::kNone) continue;
+      const ContactBand::Node& node = band_.nodes[n];
+      const bool known = height_tells(band_, node);
+      cut_.set_height(p, node.height);
+      std::int32_t& wish = cut_.wish(p);
+      if (known && at_border(band_, node))
+        wish = node.height < 0.0f ? kHard : -kHard;
+      else
+        wish = capacity((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - (known ? kPull * node.height : 0.0f));
+      set_bit(certain_, p, std::abs(wish) == kHard);
     }
-  }
-  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
-    const auto n = static_cast<std::uint32_t>(i);
-    const std::int32_t cost = std::clamp(wish[n], -kHard, kHard);
-    cut_.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
   });
-  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
-    each_face_of(band_, static_cast<std::uint32_t>(i), [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
-      cut_.add_step_cost(n, m, axis, cost_of_face(band_, n, m, axis, 0.5f * (dips.strength[n] + dips.strength[m])));
+}
+
+void ClayDivision::add_hints(const std::vector<SurfaceHint>& hints) {
+  for (const SurfaceHint& hint : hints) {
+    const std::int32_t sense = hint.side == ClaySide::kTablet ? 1 : -1;
+    const std::uint32_t p = bricks_.point(hint.node);
+    if (has_bit(certain_, p)) continue;
+    if (hint.weight >= kCertain)
+      cut_.wish(p) = sense * kHard;
+    else
+      cut_.wish(p) += sense * capacity(hint.weight);
+    set_bit(certain_, p, hint.weight >= kCertain);
+  }
+  for (const SurfaceHint& hint : hints) {
+    std::int32_t& wish = cut_.wish(bricks_.point(hint.node));
+    wish = std::clamp(wish, -kHard, kHard);
+  }
+}
+
+void ClayDivision::add_steps(const Dips& dips) {
+  each_brick(bricks_, [&](std::uint32_t b) {
+    BrickFaces(band_, dips, bricks_, b).each([&](std::uint32_t k, std::uint32_t axis, std::int32_t cost) {
+      cut_.add_step_cost(LatticeBricks::kPoints * b + k, axis, cost);
     });
   });
-  for (const ClayCavity& cavity : evidence.whole)
-    for (std::size_t i = 1; i < cavity.size(); ++i) cut_.tie(cavity[i - 1], cavity[i], kHard);
 }
 
 Result<std::vector<ClaySide>> ClayDivision::sides(Progress& progress) {
   DUBSAR_TRY(cut_.solve(progress));
   std::vector<ClaySide> side(band_.nodes.size());
-  parallel_for(static_cast<std::int64_t>(side.size()), kNodeGrain, [&](std::int64_t i) {
-    const auto n = static_cast<std::uint32_t>(i);
-    side[n] = cut_.on_source_side(n) ? ClaySide::kTablet : ClaySide::kEnvelope;
+  BrickBits tablet(bricks_.lattice().count(), 0);
+  each_brick(bricks_, [&](std::uint32_t b) {
+    std::uint32_t point = LatticeBricks::kPoints * b;
+    for (const std::uint32_t n : bricks_.nodes(b)) {
+      const std::uint32_t p = point++;
+      if (n == ContactBand::kNone) continue;
+      const bool of_tablet = cut_.on_source_side(p);
+      side[n] = of_tablet ? ClaySide::kTablet : ClaySide::kEnvelope;
+      set_bit(tablet, p, of_tablet);
+    }
   });
-  constexpr int kMostRounds = 5;  // seldom more than two
+  constexpr int kMostRounds = 5;    // seldom more than two
+  constexpr int kMostPinches = 20;  // each look removes pinches and seldom makes one
   for (int round = 0; round < kMostRounds; ++round) {
-    adopt_islands(band_, side, certain_);
-    unpinch_sides(band_, side);
+    adopt_islands(band_, bricks_, certain_, tablet, side);
+    for (int look = 0; look < kMostPinches && unpinch(band_, bricks_, tablet, side); ++look) {
+    }
     if (!keep_whole(band_, whole_, side)) break;
+    tablet = bricks_.tablet(side);
   }
   return side;
 }

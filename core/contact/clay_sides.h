@@ -9,8 +9,9 @@
 #include "core/base/result.h"
 #include "core/contact/band.h"
 #include "core/contact/clay_cavities.h"
+#include "core/contact/cut/band_bricks.h"
+#include "core/contact/cut/lattice_cut.h"
 #include "core/contact/dips.h"
-#include "core/contact/lattice_cut.h"
 
 namespace dubsar {
 
@@ -32,23 +33,27 @@ struct ClayEvidence {
   const std::vector<ClayCavity>& whole;
 };
 
-/// The cut. Borrows the band. 70 bytes a node.
+/// The cut. Borrows the band and the cavities. 24 bytes for each point of its bricks of 4x4x4, about 31 a node.
 class ClayDivision {
  public:
   explicit ClayDivision(const ClayEvidence& evidence);
+  ClayDivision(const ClayDivision&) = delete;
+  ClayDivision& operator=(const ClayDivision&) = delete;
 
-  /// Sides of all nodes. Every node hangs together with clay at the border of the band through nodes of its side, or is
-  /// cut off by air and counts as the tablet's. kCancelled.
+  /// Sides of all nodes, once. Every node hangs together with clay at the border of the band through nodes of its side,
+  /// or is cut off by air and counts as the tablet's. kCancelled.
   Result<std::vector<ClaySide>> sides(Progress& progress);
 
  private:
-  const ContactBand& band_;
-  std::vector<ClayCavity> whole_;
-  LatticeCut cut_;
-  std::vector<bool> certain_;
-};
+  void add_points(const ClayEvidence& evidence);
+  void add_hints(const std::vector<SurfaceHint>& hints);
+  void add_steps(const Dips& dips);
 
-/// Removes points of a grid face that belong to tablet, envelope, tablet, envelope in turn.
-void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side);
+  const ContactBand& band_;
+  const std::vector<ClayCavity>& whole_;
+  BandBricks bricks_;
+  LatticeCut cut_;     ///< source side: tablet
+  BrickBits certain_;  ///< points whose side is known
+};
 
 }  // namespace dubsar
