@@ -6,19 +6,13 @@
 #include <glm/common.hpp>
 #include <limits>
 
+#include "core/seals/seal_mean.h"
+
 namespace dubsar {
 namespace {
 
 constexpr int kPlacingRounds = 2;
-constexpr double kBelowMm = 0.1;                            // noise of a scan is a third of that
 constexpr double kTurnOffMm = 0.8, kFinerTurnStepMm = 0.1;  // the search has cells of .4 mm
-constexpr double kWornShare = 0.15;  // of the most figures that another impression shows there: it is worn level
-
-/// What one turn of one impression has over the seal's raster.
-struct SealView {
-  std::size_t impression;
-  SealImpression over;
-};
 
 struct Canvas {
   int width = 0, height = 0;
@@ -93,59 +87,9 @@ std::vector<SealView> views_of(const std::vector<SealImpression>& impressions, c
           view.over.figure[at] = static_cast<float>(s.figure);
           view.over.raised[at] = static_cast<float>(s.raised);
         }
-      if (any) out.push_back(std::move(view));
+      if (any || out.empty()) out.push_back(std::move(view));
     }
   }
-  return out;
-}
-
-/// The mean of all views but those of one impression (`without`; as many as there are: none is left out).
-SealImpression mean_of(const std::vector<SealView>& views, std::size_t without, const Canvas& canvas,
-                       std::vector<float>* seen_by) {
-  SealImpression out{canvas.width, canvas.height, canvas.step_mm, {}, {}, {}, {}};
-  for (std::vector<float>* each : {&out.mm, &out.shown, &out.raised, &out.figure}) each->resize(canvas.cells());
-  std::vector<const SealView*> of;
-  for (const SealView& view : views)
-    if (view.impression != without) of.push_back(&view);
-  std::vector<float> most(canvas.cells());  // of figures
-  for (const SealView* view : of)
-    for (std::size_t k = 0; k < most.size(); ++k)
-      if (view->over.shown[k] > 0.3f) most[k] = std::max(most[k], view->over.figure[k]);
-  // Noise has some figures everywhere: their usual least.
-  std::vector<float> level;
-  for (const float figure : most)
-    if (figure > 0.0f) level.push_back(figure);
-  float noise = 1e-6f;
-  if (!level.empty()) {
-    const auto at = level.begin() + static_cast<std::ptrdiff_t>(level.size() / 10);
-    std::nth_element(level.begin(), at, level.end());
-    noise = std::max(noise, 0.3f * *at);
-  }
-  std::vector<float> all(canvas.cells());
-  for (const SealView* view : of)
-    for (std::size_t k = 0; k < most.size(); ++k) {
-      // Nothing raises clay later: what shows more is whole. What lies below the ground is at the rim of a break.
-      const float share = (view->over.figure[k] + noise) / (most[k] + noise),
-                  below = std::min(0.0f, view->over.mm[k]) / static_cast<float>(kBelowMm),
-                  weight = view->over.shown[k] * share * std::exp(-below * below);
-      out.mm[k] += weight * view->over.mm[k];
-      out.raised[k] += weight * view->over.raised[k];
-      all[k] += weight;
-    }
-  for (std::size_t k = 0; k < most.size(); ++k) {
-    if (!(all[k] > 0.0f)) continue;
-    out.mm[k] /= all[k];
-    out.raised[k] /= all[k];
-  }
-  if (seen_by) seen_by->assign(canvas.cells(), 0.0f);
-  for (std::size_t k = 0; k < most.size(); ++k)
-    for (std::size_t v = 0; v < of.size(); ++v) {
-      if (of[v]->over.shown[k] < 0.3f) continue;
-      out.shown[k] = std::max(out.shown[k], of[v]->over.shown[k]);
-      out.figure[k] = std::max(out.figure[k], of[v]->over.figure[k]);
-      if (seen_by && of[v]->over.figure[k] + noise >= static_cast<float>(kWornShare) * (most[k] + noise))
-        (*seen_by)[k] += 1.0f;
-    }
   return out;
 }
 
@@ -187,8 +131,7 @@ double finer_turn(const std::vector<SealImpression>& impressions, SealPlacing pl
 
 SealAverage average_seal(const std::vector<SealImpression>& impressions, const AverageOptions& options) {
   SealAverage out;
-  out.placing = place_impressions(impressions, options.first, std::max(options.turn_mm, 0.0));
-  if (options.turn_mm < 0.0) out.placing.turn_mm = out.placing.turn_sure = 0.0;
+  out.placing = place_impressions(impressions, options.first, options.turn_mm);
   for (std::size_t k = 0; k < impressions.size(); ++k)
     out.used.push_back(k == out.placing.first || out.placing.likeness[k] > 0.0 ? 1 : 0);
   for (int round = 0; round <= kPlacingRounds; ++round) {
@@ -198,7 +141,7 @@ SealAverage average_seal(const std::vector<SealImpression>& impressions, const A
     const std::vector<SealView> views = views_of(impressions, out.placing, out.used, canvas);
     out.least_mm = canvas.least;
     if (round == kPlacingRounds) {
-      out.relief = mean_of(views, impressions.size(), canvas, &out.seen_by);
+      out.relief = mean_of_views(views, impressions.size(), &out.seen_by);
       break;
     }
     PlacedOn to_canvas;
@@ -208,7 +151,7 @@ SealAverage average_seal(const std::vector<SealImpression>& impressions, const A
     const SealPlacing before = out.placing;
     for (std::size_t k = 0; k < impressions.size(); ++k) {
       if (!out.used[k] || k == out.placing.first) continue;
-      const SealImpression others = mean_of(views, k, canvas, nullptr);
+      const SealImpression others = mean_of_views(views, k, nullptr);
       out.placing.seal_from_band[k] = after(
           from_canvas, refined(others, impressions[k], after(to_canvas, before.seal_from_band[k]), canvas.turn_mm));
     }

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kSearchMm = 0.4;       // cells of the search: half a limb
 constexpr double kAcrossMm = 4.0;       // a person names the middle of a band better than that
-constexpr double kFigureMm2 = 4.0;      // what tells one place from another
 constexpr double kLeastMeetMm2 = 30.0;  // less is chance
 constexpr double kMostMoveMm = 0.5;     // in one round
 constexpr double kTurnDeg = 2.0;        // the rolling wavers, and people do not draw along it

@@ -31,11 +31,12 @@ PlacedOn after(const PlacedOn& a, const PlacedOn& b);
 /// How alike two impressions are, by how far the second is moved along the first: for each shift along, over all
 /// shifts across (at most 4 mm), turns of -2, 0 and 2 degrees, and both ways up.
 struct Likeness {
+  static constexpr double kFigureMm2 = 4.0;  ///< what tells one place from another
   struct At {
     double likeness = 0.0;  ///< correlation where both show something, -1..1
     double area_mm2 = 0.0;  ///< of that
     PlacedOn first_from_second;
-    /// Likeness in deviations of what unlike ones have: figures are some 4 mm2 large.
+    /// Likeness in deviations of what unlike ones have.
     double weight() const;
   };
   double step_mm = 0.0, least_mm = 0.0;
