@@ -12,7 +12,7 @@ namespace dubsar {
 namespace {
 
 constexpr int kPlacingRounds = 2;
-constexpr double kTurnOffMm = 0.8, kFinerTurnStepMm = 0.1;  // the search has cells of .4 mm
+constexpr double kTurnOffMm = 1.2, kFinerTurnStepMm = 0.1;  // the search takes the best within .8 mm
 
 struct Canvas {
   int width = 0, height = 0;

@@ -171,6 +171,59 @@ TEST(SealAverage, BearsAnImpressionUpsideDownWeakPressingScratchesAndUnevenClay)
   EXPECT_GT(times_as_near(34, uneven, false), 1.5);
 }
 
+/// Three stand in a row, 9 mm apart, each alike: the seal is half alike to itself 9 and 18 mm on.
+DrawnSeal with_worshippers(unsigned seed) {
+  DrawnSeal out(seed);
+  out.strokes.resize(10);
+  for (const double x : {4.0, 13.0, 22.0}) {
+    out.strokes.push_back({x, 3.0, 0.0, 6.0, 1.2});
+    out.strokes.push_back({x, 11.5, 0.1, 1.0, 0.9});
+    out.strokes.push_back({x, 8.0, 2.5, 1.0, 0.5});
+    out.strokes.push_back({x - 0.5, 7.0, -2.0, -3.0, 0.45});
+  }
+  return out;
+}
+
+HeightMap left_part(const HeightMap& of, double wide_mm) {
+  HeightMap out;
+  out.step_mm = of.step_mm;
+  out.width = static_cast<int>(wide_mm / of.step_mm);
+  out.height = of.height;
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x)
+      out.mm.push_back(
+          of.mm[static_cast<std::size_t>(y) * static_cast<std::size_t>(of.width) + static_cast<std::size_t>(x)]);
+  return out;
+}
+
+TEST(SealAverage, FindsTheTurnOfFiguresInARowOrSaysThatItDoesNot) {
+  int found = 0;
+  for (const unsigned seed : {41u, 42u, 43u, 44u, 45u}) {
+    const DrawnSeal seal = with_worshippers(seed);
+    std::vector<SealImpression> impressions;
+    for (unsigned k = 0; k < 3; ++k)
+      impressions.push_back(level_impression(rolled(seal, kRolled[k], Worn(100 * seed + k), seed + k)));
+    const SealAverage average = average_seal(impressions);
+    found += average.placing.turn_mm > 0.0 ? 1 : 0;
+    if (average.placing.turn_mm > 0.0) {
+      EXPECT_NEAR(average.placing.turn_mm, kSealTurn, 0.7) << seed;
+    }
+  }
+  EXPECT_GE(found, 4);
+}
+
+TEST(SealAverage, FindsNoTurnWhereNothingComesTwice) {
+  for (const unsigned seed : {51u, 52u, 53u}) {
+    const DrawnSeal seal = with_worshippers(seed);
+    std::vector<SealImpression> impressions;
+    for (unsigned k = 0; k < 3; ++k) {
+      const Rolled how{5.0 + 2.0 * k, 0.0, 0.0};
+      impressions.push_back(level_impression(left_part(rolled(seal, how, Worn(100 * seed + k), seed + k), 30.0)));
+    }
+    EXPECT_EQ(average_seal(impressions).placing.turn_mm, 0.0) << seed;
+  }
+}
+
 TEST(SealAverage, OfAnotherSealIsLeftOut) {
   const DrawnSeal seal(21), other(22);
   const Worn whole(1), worn(2), third(3);
