@@ -198,7 +198,8 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
         "fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
   DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(result.mesh, result.report.mesh.watertight()));
-  result.mesh = {};  // writing takes the most memory where little is glued
+  result.mesh = {};  // a file holds no triangles
+  result.model.drawing.reset();
   DUBSAR_TRY(write_product(options.out, result, progress));
   VerbResult out;
   out.json = report_json(result.report, p);

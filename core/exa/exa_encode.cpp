@@ -17,8 +17,17 @@
 
 namespace dubsar {
 namespace {
-/// The arrays of a model must fit its mesh, and its mesh must be the one that its samples give.
-Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
+/// The mesh of a model without labels must be the one that its samples give.
+Result<void> check_rebuilt(const SurfaceModel& model, const QuadMesh& rebuilt) {
+  if (model.mesh.quads != rebuilt.quads || model.mesh.doubled != rebuilt.doubled ||
+      model.mesh.positions.size() != rebuilt.positions.size())
+    return fail(ErrorKind::kInternal, "exa: the mesh of {} vertices is not the one that the samples give ({} vertices)",
+                model.mesh.positions.size(), rebuilt.positions.size());
+  return {};
+}
+
+/// The arrays of a model must fit its mesh.
+Result<void> check_model(const SurfaceModel& model) {
   const auto vertices = static_cast<std::size_t>(model.mesh.vertex_count());
   const auto quads = static_cast<std::size_t>(model.mesh.quad_count());
   const auto fits = [](std::size_t size, std::size_t count) { return size == 0 || size == count; };
@@ -27,10 +36,6 @@ Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
       !fits(a.shape.size(), vertices) || !fits(a.ao.size(), vertices) || !fits(a.evidence.size(), vertices) ||
       !fits(model.quad_partition.size(), quads))
     return fail(ErrorKind::kInternal, "exa: arrays do not fit the mesh of {} vertices and {} x-quads", vertices, quads);
-  if (model.mesh.quads != rebuilt.quads || model.mesh.doubled != rebuilt.doubled ||
-      model.mesh.positions.size() != rebuilt.positions.size())
-    return fail(ErrorKind::kInternal, "exa: the mesh of {} vertices is not the one that the samples give ({} vertices)",
-                vertices, rebuilt.positions.size());
   const auto finite = [](float v) { return std::isfinite(v); };
   const auto all_finite = [&](const std::vector<glm::vec3>& items) {
     return std::all_of(items.begin(), items.end(),
@@ -155,9 +160,9 @@ void add_labels(const SurfaceModel& model, const ExaHeader& header, BlockList& b
 Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress) {
   BlockList positions, labelled;
   ExaHeader header;
+  DUBSAR_TRY(check_model(model));
   if (model.labelled) {
     DUBSAR_ASSIGN(const LabelledCode code, encode_labelled(model, progress));
-    DUBSAR_TRY(check_model(model, code.rebuilt));
     labelled.add("LABL", true, code.labels, kLabelled);
     labelled.add("LOFS", true, code.offsets);
     labelled.add("LEVI", true, code.evidence);
@@ -166,7 +171,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
     header.sums.contact = code.counts;
   } else {
     DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
-    DUBSAR_TRY(check_model(model, base));
+    DUBSAR_TRY(check_rebuilt(model, base));
     add_positions(model, base, positions, progress);
   }
   header.frame = model.frame;

@@ -52,6 +52,7 @@ void QuadMesh::build_incidence() {
   });
   std::uint32_t sum = 0;
   for (std::uint32_t& count : first_incident) count = sum += count;
+  if (incident.capacity() < sum) incident = {};  // growing, it would take twice as much
   incident.resize(sum);
   for_each([&](std::uint32_t v, std::uint32_t q) {
     incident[std::atomic_ref(first_incident[v]).fetch_sub(1, std::memory_order_relaxed) - 1] = q;

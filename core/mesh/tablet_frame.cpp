@@ -20,6 +20,7 @@ namespace dubsar {
 namespace {
 
 constexpr std::int64_t kFrameGrain = 1 << 16;
+constexpr std::uint32_t kUnused = 0xffffffffu;
 constexpr double kSteps = 800.0;      // of the finest map over the root of a broad side's area: wedges of a hundredth
 constexpr int kSizes = 4;             // of wedges, each twice the one before: up to an eighth
 constexpr double kMirrored = 0.02;    // of surfaces: programs that exchange axes, or read the wrong handedness
@@ -194,12 +195,36 @@ std::vector<Triangle> written_triangles(const TriMesh& mesh) {
   const Partition* const tablet =
       mesh.triangle_partition.empty() ? nullptr : mesh.partitions.find(PartitionKind::kTablet);
   if (tablet == nullptr && mesh.triangle_inferred.empty()) return mesh.triangles;
+  const auto is_written = [&](std::size_t t) {
+    return (mesh.triangle_inferred.empty() || !mesh.triangle_inferred[t]) &&
+           (tablet == nullptr || mesh.triangle_partition[t] == tablet->id);
+  };
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) count += is_written(t) ? 1 : 0;
   std::vector<Triangle> out;
+  out.reserve(count);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if ((mesh.triangle_inferred.empty() || !mesh.triangle_inferred[t]) &&
-        (tablet == nullptr || mesh.triangle_partition[t] == tablet->id))
-      out.push_back(mesh.triangles[t]);
+    if (is_written(t)) out.push_back(mesh.triangles[t]);
   return out;
+}
+
+/// Vertices in mm: those of `triangles`, which get their numbers among these, or all where there are none.
+std::vector<glm::dvec3> points_of(const TriMesh& mesh, std::vector<Triangle>& triangles) {
+  std::vector<std::uint32_t> number(triangles.empty() ? 0 : mesh.positions.size(), 0);
+  for (const Triangle& t : triangles)
+    for (const std::uint32_t v : t) number[v] = 1;
+  std::uint32_t count = 0;
+  for (std::uint32_t& used : number) used = used != 0 ? count++ : kUnused;
+  std::vector<glm::dvec3> points(number.empty() ? mesh.positions.size() : count);
+  parallel_for(static_cast<std::int64_t>(mesh.positions.size()), kFrameGrain, [&](std::int64_t i) {
+    const auto v = static_cast<std::size_t>(i);
+    const std::size_t to = number.empty() ? v : number[v];
+    if (to < points.size()) points[to] = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v]));
+  });
+  parallel_for(static_cast<std::int64_t>(triangles.size()), kFrameGrain, [&](std::int64_t t) {
+    for (std::uint32_t& v : triangles[static_cast<std::size_t>(t)]) v = number[v];
+  });
+  return points;
 }
 
 /// One of the ways that a tablet may lie, with what speaks for it.
@@ -243,12 +268,8 @@ std::string TabletFrame::doubt() const {
 }
 
 Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
-  std::vector<glm::dvec3> points(mesh.positions.size());
-  parallel_for(static_cast<std::int64_t>(points.size()), kFrameGrain, [&](std::int64_t i) {
-    const auto v = static_cast<std::size_t>(i);
-    points[v] = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v]));
-  });
-  const std::vector<Triangle> written = written_triangles(mesh);
+  std::vector<Triangle> written = written_triangles(mesh);
+  const std::vector<glm::dvec3> points = points_of(mesh, written);
   DUBSAR_ASSIGN(const BodyAxes body, body_axes(points, written.empty() ? mesh.triangles : written));
   std::vector<Lie> lies = all_lies(Writing(points, written, body), body);
   double most = -std::numeric_limits<double>::infinity(), sum = 0.0;

@@ -188,8 +188,19 @@ Result<void> put_labelled_mesh(SurfaceModel& model, const LabelledMesh& labelled
   return {};
 }
 
-QuadMesh mesh_at_air(const LabelledMesh& labelled) {
-  return mesh_with_numbers(labelled, numbers_in_model(labelled), vertices_at_air(labelled));
+bool is_mesh_at_air(const QuadMesh& mesh, const LabelledMesh& labelled) {
+  const std::size_t quads = labelled.first_contact;
+  if (mesh.positions.size() != vertices_at_air(labelled) || mesh.quads.size() != quads) return false;
+  const std::vector<std::uint32_t> number = numbers_in_model(labelled);
+  for (std::size_t q = 0; q < quads; ++q)
+    for (std::size_t k = 0; k < 4; ++k)
+      if (mesh.quads[q][k] != number[labelled.mesh.quads[q][k]]) return false;
+  std::size_t found = 0;
+  for (const DoubledCorner& d : labelled.mesh.doubled)
+    if (d.quad < quads &&
+        (found == mesh.doubled.size() || mesh.doubled[found++] != DoubledCorner{d.quad, number[d.vertex], d.corner}))
+      return false;
+  return found == mesh.doubled.size();
 }
 
 void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled) {

@@ -16,8 +16,8 @@ namespace dubsar {
 /// partitions. Other patches go. The contact lies between tablet and inside of the envelope.
 Result<void> put_labelled_mesh(SurfaceModel& model, const LabelledMesh& labelled);
 
-/// The mesh that such a model gets, without incidences.
-QuadMesh mesh_at_air(const LabelledMesh& labelled);
+/// Has `mesh` the vertices, in number, and the x-quads that such a model gets?
+bool is_mesh_at_air(const QuadMesh& mesh, const LabelledMesh& labelled);
 
 /// The triangles of such a model: triangulate() of all its x-quads together, guided by the model's normals where it has
 /// any. Points that are added in the contact are known as the first vertex of their x-quad that is not at the air.

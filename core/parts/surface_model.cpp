@@ -138,6 +138,16 @@ std::size_t patch_triangles(const SurfaceModel& model) {
   return count;
 }
 
+/// The triangles that a model draws, with room for `more`.
+Triangulation drawing_of(const SurfaceModel& model, std::size_t more) {
+  if (!model.drawing) return triangulate(model.mesh, model.attributes.normals, more);
+  const Triangulation& own = *model.drawing;
+  Triangulation copy{{}, own.first_triangle, own.steiner, own.face_points};
+  copy.triangles.reserve(own.triangles.size() + more);
+  copy.triangles.assign(own.triangles.begin(), own.triangles.end());
+  return copy;
+}
+
 /// Calls add(triangle) for a triangle, or for those that it is cut into where sides of x-quads that it shares have
 /// points, whose ids begin with first_bend.
 template <class Add>
@@ -271,8 +281,7 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   DUBSAR_ASSIGN(const Selection selection, select(model, options));
   TriangleSoup soup;
   const std::size_t more = options.fill_holes ? patch_triangles(model) : 0;
-  add_quads(model, selection, model.drawing ? *model.drawing : triangulate(model.mesh, model.attributes.normals, more),
-            soup);
+  add_quads(model, selection, drawing_of(model, more), soup);
   soup.first_patch_triangle = soup.triangles.size();
   soup.first_patch_vertex = model.mesh.positions.size() + soup.added.size();
   if (options.fill_holes) add_patches(model, selection, soup);

@@ -114,6 +114,9 @@ Result<LabelledCode> encode_labelled(const SurfaceModel& model, Progress& progre
       model.patches.front().extra_positions.size() < surface.evidence.size())
     return fail(ErrorKind::kInternal, "exa: the mesh of {} vertices is not the one that the labels give ({} vertices)",
                 model.mesh.positions.size(), base.mesh.positions.size() - surface.evidence.size());
+  if (!is_mesh_at_air(model.mesh, base))
+    return fail(ErrorKind::kInternal, "exa: the mesh of {} vertices is not the one that the labels give",
+                model.mesh.positions.size());
   DUBSAR_ASSIGN(code.offsets, encode_contact_offsets({model.samples, index, labels, edges}, surface.contact, progress));
   const InnerMesh inner = inner_mesh(base);
   code.evidence = encode_labels(ExaLabel::kEnum, inner.mesh, surface.evidence, progress);
@@ -126,9 +129,6 @@ Result<LabelledCode> encode_labelled(const SurfaceModel& model, Progress& progre
   }
   code.counts = {static_cast<std::int64_t>(surface.contact.size()), static_cast<std::int64_t>(surface.evidence.size()),
                  contact_sum_of(model)};
-  places = {};
-  base.mesh.first_incident = {}, base.mesh.incident = {};
-  code.rebuilt = mesh_at_air(base);
   if (progress.cancelled()) return cancelled_error();
   return code;
 }

@@ -20,7 +20,6 @@ struct LabelledCode {
   /// Of all vertices, in the order of LabelledMesh: as escapes or exact; both empty: none escapes.
   std::vector<std::string> escapes, exact;
   ExaContact counts;
-  QuadMesh rebuilt;  ///< the mesh at the air that a reader builds, places aside
 };
 
 /// kInternal: a model whose mesh or patch is not what its labels give; kTryAgain; kCancelled.

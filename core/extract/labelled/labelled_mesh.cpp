@@ -302,6 +302,7 @@ Result<LabelledMesh> put_labels(QuadMesh unlabelled, ContactQuads contact, const
     Heirs{mesh, dropped, heirs}.look(mixed, result.cells[i], table.config(result.cells[i].config));
   });
   std::vector<std::uint32_t> new_number(before, kNoVertex);
+  result.unlabelled.reserve(before + own);
   for (std::size_t v = 0; v < before; ++v) {
     if (dropped[v]) continue;
     new_number[v] = static_cast<std::uint32_t>(result.unlabelled.size());
@@ -313,6 +314,7 @@ Result<LabelledMesh> put_labels(QuadMesh unlabelled, ContactQuads contact, const
   if (result.cells.empty()) return result;
 
   mesh.positions.resize(result.first_mixed);
+  mesh.positions.reserve(result.first_mixed + own);  // no more than that
   mesh.positions.insert(mesh.positions.end(), contact.mesh.positions.begin(), contact.mesh.positions.end());
   parallel_for(result.first_contact, 1 << 14, [&](std::int64_t q) {
     for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = new_number[v];
@@ -334,6 +336,7 @@ Result<LabelledMesh> put_labels(QuadMesh unlabelled, ContactQuads contact, const
         });
   });
   add_doubled(more, doubled);
+  mesh.quads.reserve(mesh.quads.size() + contact.mesh.quads.size());
   for (auto quad : contact.mesh.quads) {
     for (std::uint32_t& v : quad) v += result.first_mixed;
     mesh.quads.push_back(quad);
