@@ -103,6 +103,7 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
       });
   });
   if (progress.cancelled()) return cancelled_error();
+  band.node_at.reserve(static_cast<std::size_t>(std::ranges::count(has_nodes, std::uint8_t{1})));
   for (std::size_t b = 0; b < bricks.size(); ++b)
     if (has_nodes[b] != 0) band.node_at.add_brick(bricks[b].x, bricks[b].y, bricks[b].z);
   std::vector<std::int64_t> first(found.size());
@@ -121,7 +122,15 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
 void ContactBand::trim_envelope(float reach) {
   envelope_reach = reach;
   std::erase_if(nodes, [&](const Node& node) { return node.distance > reach_at(node.height); });
+  nodes.shrink_to_fit();
+  const auto bricks =
+      static_cast<std::size_t>(std::ranges::count_if(nodes, [last = glm::ivec3(-1)](const Node& node) mutable {
+        const glm::ivec3 before =
+            std::exchange(last, glm::ivec3(node.x, node.y, node.z) / static_cast<int>(BrickMap<std::uint32_t>::kEdge));
+        return before != last;
+      }));
   node_at = BrickMap<std::uint32_t>(node_at.dims(), kNone);
+  node_at.reserve(bricks);
   for (std::uint32_t n = 0; n < nodes.size(); ++n) node_at.at(nodes[n].x, nodes[n].y, nodes[n].z) = n;
 }
 

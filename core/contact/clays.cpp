@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <glm/common.hpp>
 #include <map>
 
@@ -60,8 +61,8 @@ std::vector<Layers> layers_of_pieces(const ContactBand& band, const BitVolume& i
                                      float side) {
   const glm::vec3 middle = middle_of(band.samples);
   struct Value {
-    std::array<int, 3> piece;
-    std::size_t layer;
+    std::array<std::int16_t, 3> piece;
+    std::uint16_t layer;
     float density;
   };
   const std::vector<Value> values = parallel_gather<Value>(
@@ -75,11 +76,14 @@ std::vector<Layers> layers_of_pieces(const ContactBand& band, const BitVolume& i
             if (height < kLayers[layer][0] || height > kLayers[layer][1]) continue;
             if (air_near(inside, {node.x, node.y, node.z})) continue;
             const glm::ivec3 piece(glm::round((band.samples[node.sample].position - middle) / side));
-            found.push_back({{piece.x, piece.y, piece.z}, layer, density.get(node.x, node.y, node.z)});
+            const auto narrow = [](int at) { return static_cast<std::int16_t>(at); };
+            found.push_back({{narrow(piece.x), narrow(piece.y), narrow(piece.z)},
+                             static_cast<std::uint16_t>(layer),
+                             density.get(node.x, node.y, node.z)});
           }
         }
       });
-  std::map<std::array<int, 3>, Layers> pieces;
+  std::map<std::array<std::int16_t, 3>, Layers> pieces;
   for (const Value& value : values) pieces[value.piece][value.layer].push_back(value.density);
   std::vector<Layers> enough;
   for (auto& [place, layers] : pieces)

@@ -30,6 +30,8 @@ class BandDensity {
   const BrickMap<float>& raw() const noexcept { return raw_; }
   /// Half of the memory: nobody needs it behind find_dips().
   void drop_raw() { raw_ = BrickMap<float>({}, 0.0f); }
+  /// Nothing.
+  BandDensity() : raw_({}, 0.0f), smooth_({}, 0.0f) {}
 
  private:
   BandDensity(BrickMap<float> raw, BrickMap<float> smooth) : raw_(std::move(raw)), smooth_(std::move(smooth)) {}

@@ -1,5 +1,8 @@
 #include "core/pipeline/contact_stage.h"
 
+#include <optional>
+
+#include "core/base/system/large_blocks.h"
 #include "core/base/system/log.h"
 #include "core/exa/offsets/settle_labelled.h"
 #include "core/filter/resample.h"
@@ -18,10 +21,11 @@ Result<ContactReport> traced_in_scan(SurfaceModel& model, ContactRules rules, Im
   options.halve_first = !imported.detail.resample();
   if (const auto& rays = imported.facts.rays; rays && rays->straightened)
     options.least_clay_step = static_cast<float>(kUnevenClay * rays->bent->after.clay * rays->bent->levels.contrast());
-  HalfResolutionSource halved(imported.unbent());
-  SlabSource& density = imported.straightened        ? static_cast<SlabSource&>(*imported.straightened)
-                        : imported.detail.resample() ? static_cast<SlabSource&>(halved)
-                                                     : imported.unbent();
+  std::optional<HalfResolutionSource> halved;
+  if (!imported.straightened && imported.detail.resample()) halved.emplace(imported.unbent());
+  SlabSource& density = imported.straightened ? static_cast<SlabSource&>(*imported.straightened)
+                        : halved              ? static_cast<SlabSource&>(*halved)
+                                              : imported.unbent();
   return trace_contact(model, density, options, progress);
 }
 
@@ -36,6 +40,7 @@ Result<ClosedModel> close_contact(SurfaceModel model, const ClosingOptions& opti
                                         : traced_in_scan(closed.model, options.rules, imported, run.progress));
   if (options.smooth) contact.why = *options.smooth;
   if (contact.labelled) {
+    return_free_memory();
     DUBSAR_ASSIGN(const LabelledSettling settled,
                   settle_labelled(closed.model, std::move(*contact.labelled), options.settle.curvature,
                                   options.settle.exact_normals, run.progress));
