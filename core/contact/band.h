@@ -2,7 +2,6 @@
 // The clay around the patches between tablet and envelope: all grid points inside the object within some steps of a
 // patch, each with its height over it.
 
-#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -63,30 +62,6 @@ struct ContactBand {
   std::uint32_t at(const glm::ivec3& p) const noexcept { return node_at.get(p.x, p.y, p.z); }
   glm::ivec3 point(std::uint32_t node) const noexcept { return {nodes[node].x, nodes[node].y, nodes[node].z}; }
   const glm::vec3& normal(std::uint32_t node) const noexcept { return samples[nodes[node].sample].normal; }
-  /// The nodes one step from a node: most lie in its own brick.
-  class Around {
-   public:
-    Around(const ContactBand& band, std::uint32_t node)
-        : band_(band),
-          point_(band.point(node)),
-          brick_(band.node_at.brick(point_.x / kSide, point_.y / kSide, point_.z / kSide)),
-          inside_(((point_.z % kSide) * kSide + point_.y % kSide) * kSide + point_.x % kSide) {}
-    const glm::ivec3& point() const noexcept { return point_; }
-    /// kNone: not in the band. `sense`: -1 or 1.
-    std::uint32_t at(int axis, int sense) const noexcept {
-      constexpr std::array<int, 3> kSteps{1, kSide, kSide * kSide};
-      const int along = point_[axis] % kSide + sense;
-      if (along >= 0 && along < kSide) return brick_[inside_ + sense * kSteps[static_cast<std::size_t>(axis)]];
-      return band_.at(point_ + sense * unit_step(axis));
-    }
-
-   private:
-    static constexpr int kSide = BrickMap<std::uint32_t>::kEdge;
-    const ContactBand& band_;
-    glm::ivec3 point_;
-    const std::uint32_t* brick_;
-    int inside_;
-  };
 
   /// About 0.3 us a point of the band; points one step from the border of the grid are left out. kCancelled.
   static Result<ContactBand> make(const BitVolume& inside, std::vector<PatchPoint> samples, float reach,
@@ -94,13 +69,5 @@ struct ContactBand {
   /// Drops what lies over the patches and farther from them than that.
   void trim_envelope(float reach);
 };
-
-/// visit(point, node) for the six points one step from a node; kNone: not in the band.
-template <class Visit>
-void each_node_beside(const ContactBand& band, std::uint32_t node, const Visit& visit) {
-  const ContactBand::Around around(band, node);
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int sense : {-1, 1}) visit(around.point() + sense * unit_step(axis), around.at(axis, sense));
-}
 
 }  // namespace dubsar

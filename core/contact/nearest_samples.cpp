@@ -50,42 +50,30 @@ void NearestSamples::fill_cells() {
   }
   std::uint32_t places = 0;
   for (Cell& cell : cells_) {
-    cell.first_places = places;
-    cell.places = static_cast<std::uint32_t>((cell.places + kTogether - 1) / kTogether);
+    cell.first_place = places;
     places += cell.places;
   }
-  Places none;
-  for (auto* const axis : {&none.x, &none.y, &none.z}) axis->fill(INFINITY);
-  none.sample.fill(kNone);
-  places_.resize(places, none);
+  places_.resize(places);
   parallel_for(static_cast<std::int64_t>(cells_.size()), kCellGrain, [&](std::int64_t c) {
-    Places* const own = places_.data() + cells_[static_cast<std::size_t>(c)].first_places;
-    std::size_t place = 0;
-    for (std::uint32_t s = last[static_cast<std::size_t>(c)]; s != kNone; s = before[s], ++place) {
-      Places& some = own[place / kTogether];
-      const std::size_t k = place % kTogether;
-      some.x[k] = samples_[s].position.x;
-      some.y[k] = samples_[s].position.y;
-      some.z[k] = samples_[s].position.z;
-      some.sample[k] = s;
-    }
+    std::uint32_t place = cells_[static_cast<std::size_t>(c)].first_place;
+    for (std::uint32_t s = last[static_cast<std::size_t>(c)]; s != kNone; s = before[s])
+      places_[place++] = {samples_[s].position, s};
   });
   find_cells_beside(cell_at);
 }
 
 void NearestSamples::find_cells_beside(const BrickMap<std::uint32_t>& cell_at) {
   const auto count = static_cast<std::int64_t>(cells_.size());
-  using Cells = std::vector<Beside>;
-  beside_ = parallel_gather<Beside>(count, kCellGrain, [&](std::int64_t begin, std::int64_t end, Cells& found) {
+  using Ids = std::vector<std::uint32_t>;
+  beside_ = parallel_gather<std::uint32_t>(count, kCellGrain, [&](std::int64_t begin, std::int64_t end, Ids& found) {
     for (std::int64_t c = begin; c < end; ++c) {
       Cell& cell = cells_[static_cast<std::size_t>(c)];
       for (int n = 0; n < 27; ++n) {
         const int k = (n + 13) % 27;  // itself first
-        const glm::ivec3 off(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1), q = cell.point + off;
+        const glm::ivec3 q = cell.point + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
         const std::uint32_t other = cell_at.get(q.x, q.y, q.z);
         if (other == kNone) continue;
-        const Cell& there = cells_[other];
-        found.push_back({there.first_places, there.places, off.x, off.y, off.z});
+        found.push_back(other);
         ++cell.beside;
       }
     }
@@ -174,7 +162,6 @@ std::uint32_t NearestSamples::nearest_of(const glm::ivec3& p, std::uint32_t gues
 /// Goes on to the nearest of the samples around `nearest`, at the square of a distance `least`. One beyond the grid has
 /// none around it.
 void NearestSamples::look_around(const glm::ivec3& p, std::uint32_t& nearest, float& least) const {
-  const glm::vec3 point(p);
   glm::ivec3 middle(-kMostLooks);  // of the look before
   std::uint32_t seen = 0;          // bits of cells around it whose samples were looked at
   for (int look = 0; look < kMostLooks; ++look) {
@@ -185,30 +172,24 @@ void NearestSamples::look_around(const glm::ivec3& p, std::uint32_t& nearest, fl
     const float height = glm::dot(off, normal), aside = std::sqrt(std::max(least - height * height, 0.0f)) + 0.87f;
     const glm::ivec3 from = cells_[own].point - 1 - middle;
     std::uint32_t now = 0;
-    const glm::ivec3 to_own = cells_[own].point - p;
-    const Beside* const first = beside_.data() + cells_[own].first_beside;
-    for (const Beside* beside = first; beside != first + cells_[own].beside; ++beside) {
-      const glm::ivec3 off_own(beside->x, beside->y, beside->z);
-      const glm::vec3 way(to_own + off_own);
+    const std::uint32_t* const first = beside_.data() + cells_[own].first_beside;
+    for (const std::uint32_t* beside = first; beside != first + cells_[own].beside; ++beside) {
+      const Cell& cell = cells_[*beside];
+      const glm::vec3 way(cell.point - p);
       const float up = glm::dot(way, normal);
       if (glm::dot(way, way) - up * up > aside * aside) continue;
-      const glm::ivec3 at = off_own + 1, then = from + at + 1;
+      const glm::ivec3 at = cell.point - cells_[own].point + 1, then = from + at + 1;
       now |= 1u << ((at.z * 3 + at.y) * 3 + at.x);
       const auto around = [](int along) { return static_cast<unsigned>(along) < 3; };
       if (around(then.x) && around(then.y) && around(then.z) && seen >> ((then.z * 3 + then.y) * 3 + then.x) & 1u)
         continue;
-      for (std::uint32_t s = 0; s < beside->places; ++s) {
-        const Places& some = places_[beside->first_places + s];
-        std::array<float, kTogether> squares;
-        for (std::size_t k = 0; k < kTogether; ++k) {
-          const float x = point.x - some.x[k], y = point.y - some.y[k], z = point.z - some.z[k];
-          squares[k] = x * x + y * y + z * z;
-        }
-        float nearer = squares[0];
-        for (std::size_t k = 1; k < kTogether; ++k) nearer = std::min(nearer, squares[k]);
-        if (nearer >= least) continue;
-        least = nearer;
-        nearest = some.sample[static_cast<std::size_t>(std::ranges::find(squares, nearer) - squares.begin())];
+      const Place* const places = places_.data() + cell.first_place;
+      for (const Place* place = places; place != places + cell.places; ++place) {
+        const glm::vec3 to = glm::vec3(p) - place->position;
+        const float square = glm::dot(to, to);
+        if (square >= least) continue;
+        least = square;
+        nearest = place->sample;
       }
     }
     if (nearest == before || cell_of_[nearest] == own) break;

@@ -2,7 +2,6 @@
 // Which of the samples of the patches is nearest to a grid point of the clay around them.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
@@ -50,21 +49,14 @@ class NearestSamples {
  private:
   static constexpr std::int64_t kEdge = BrickMap<std::uint32_t>::kEdge;
   static constexpr std::uint32_t kNone = ContactBand::kNone;
-  static constexpr std::size_t kTogether = 8;  ///< places that are compared at once
-  /// Some places of a cell; beyond the last of them infinity.
-  struct Places {
-    std::array<float, kTogether> x, y, z;
-    std::array<std::uint32_t, kTogether> sample;
+  struct Place {
+    glm::vec3 position;
+    std::uint32_t sample;
   };
   struct Cell {
     glm::ivec3 point;
-    std::uint32_t first_places, places;
+    std::uint32_t first_place, places;
     std::uint32_t first_beside, beside;
-  };
-  /// A cell that touches another one, and where it lies around it.
-  struct Beside {
-    std::uint32_t first_places, places;
-    std::int32_t x, y, z;  ///< -1 to 1
   };
 
   NearestSamples(const std::vector<PatchPoint>& samples, const Dims& dims, float reach);
@@ -86,8 +78,8 @@ class NearestSamples {
   /// A cell is a grid point with the samples nearest to it, those at one place once. Samples beyond the grid have none.
   std::vector<std::uint32_t> cell_of_;  ///< of each sample
   std::vector<Cell> cells_;
-  std::vector<Places> places_;  ///< cell by cell, the last sample first
-  std::vector<Beside> beside_;  ///< cells that touch each cell, itself first, cell by cell
+  std::vector<Place> places_;          ///< cell by cell, the last sample first
+  std::vector<std::uint32_t> beside_;  ///< cells that touch each cell, itself first, cell by cell
 };
 
 }  // namespace dubsar

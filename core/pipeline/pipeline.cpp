@@ -19,10 +19,6 @@ namespace {
 /// the parts, before it, holds more memory.
 constexpr double kCellsToShare = 1.2e9;
 
-/// From here on a run holds the most, and what earlier stages have freed lies in pieces between it: a quarter of what
-/// the program has. To have pages cleared once more is a hundredth of its time.
-constexpr RunStage kFullest = RunStage::kParts;
-
 /// A model before its parts are known.
 SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, VertexAttributes attributes) {
   SurfaceModel model;
@@ -209,7 +205,7 @@ Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& prog
   for (const StagePlan& stage : kRunPlan) {
     if (!stage.wanted(run.plan.run)) continue;
     if (stage.stage > RunStage::kContact) run.close_scan();
-    if (memory_limit() > 0 || stage.stage >= kFullest) return_free_memory();
+    if (memory_limit() > 0) return_free_memory();
     DUBSAR_TRY(run.perform(stage.stage));
   }
   PipelineResult result{std::move(run.separated.model), {}, std::move(run.product.mesh)};

@@ -66,18 +66,18 @@ class Wave {
 
 /// In layers so thin that neighbours seldom share one.
 void Wave::list_rising() {
-  constexpr std::size_t kLayers = 1 << 10;
+  constexpr std::size_t kLabelBins = 1 << 10;
   if (begin_ == end_) return;
   const auto [low, high] =
       std::minmax_element(points_.begin() + begin_, points_.begin() + end_,
                           [](const Graph::Point& a, const Graph::Point& b) { return a.label < b.label; });
   const std::int32_t least = low->label, span = high->label - least + 1;
   const auto layer = [&](std::uint32_t p) {
-    return static_cast<std::size_t>(points_[p].label - least) * kLayers / static_cast<std::size_t>(span);
+    return static_cast<std::size_t>(points_[p].label - least) * kLabelBins / static_cast<std::size_t>(span);
   };
-  std::array<std::uint32_t, kLayers + 1> next{};
+  std::array<std::uint32_t, kLabelBins + 1> next{};
   for (std::uint32_t p = begin_; p < end_; ++p) ++next[layer(p) + 1];
-  for (std::size_t k = 1; k <= kLayers; ++k) next[k] += next[k - 1];
+  for (std::size_t k = 1; k <= kLabelBins; ++k) next[k] += next[k - 1];
   rising_.resize(end_ - begin_);
   for (std::uint32_t p = begin_; p < end_; ++p) rising_[next[layer(p)]++] = p;
 }

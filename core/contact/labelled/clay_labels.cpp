@@ -27,7 +27,8 @@ std::vector<std::uint32_t> find_islands(const BitVolume& inside, const ContactBa
   std::vector<std::uint8_t> of_node(side.size(), 0), of_piece(side.size(), 0);
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {
     const auto n = static_cast<std::uint32_t>(i);
-    each_node_beside(band, n, [&](const glm::ivec3& q, std::uint32_t m) {
+    each_beside(band.point(n), [&](const glm::ivec3& q) {
+      const std::uint32_t m = band.at(q);
       if (m != ContactBand::kNone) {
         if (side[m] != side[n])
           of_node[n] |= kBeside;
@@ -87,10 +88,9 @@ ClayBeyond::ClayBeyond(const BitVolume& inside, const ContactBand& band) : insid
   const auto nodes = static_cast<std::int64_t>(band.nodes.size());
   beside_ = parallel_gather<Beside>(nodes, kNodeGrain, [&](std::int64_t begin, std::int64_t end, Found& found) {
     for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
-      each_node_beside(band, n, [&](const glm::ivec3& q, std::uint32_t m) {
-        if (m != ContactBand::kNone) return;
+      each_beside(band.point(n), [&](const glm::ivec3& q) {
         if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= d.x || q.y >= d.y || q.z >= d.z) return;
-        if (!inside.get(q.x, q.y, q.z)) return;
+        if (!inside.get(q.x, q.y, q.z) || band.at(q) != ContactBand::kNone) return;
         found.push_back({n, runs_[run_at(q)].piece});
       });
   });

@@ -161,16 +161,9 @@ std::vector<float> distances_from_sheet(const ContactBand& band, const Interface
     const float radius =
         kRounded + std::sqrt(std::max({glm::dot(a - middle, a - middle), glm::dot(b - middle, b - middle),
                                        glm::dot(c - middle, c - middle)}));
-    const float reached = kRounded + radius + kSheetReach;  // from the middle; farther than any is looked at
     for (int z = std::max(low.z, from); z <= std::min(high.z, end - 1); ++z)
-      for (int y = low.y; y <= high.y; ++y) {
-        const float up = static_cast<float>(z) - middle.z, aside = static_cast<float>(y) - middle.y,
-                    left = reached * reached - up * up - aside * aside;
-        if (left < 0.0f) continue;
-        const float most = std::sqrt(left) + kRounded;
-        const int first = std::max(low.x, static_cast<int>(std::ceil(middle.x - most))),
-                  last = std::min(high.x, static_cast<int>(std::floor(middle.x + most)));
-        for (int x = first; x <= last; ++x) {
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
           const std::uint32_t node = band.at({x, y, z});
           if (node == ContactBand::kNone) continue;
           const glm::vec3 p(x, y, z), from_middle = p - middle;
@@ -187,7 +180,6 @@ std::vector<float> distances_from_sheet(const ContactBand& band, const Interface
           if (distance > best.distance - kSameDistance && std::abs(cosine) <= std::abs(best.cosine)) continue;
           best = {distance, cosine, rim.has(t, found.corners)};
         }
-      }
   };
   const auto slabs = slabs_of(sheet.triangles, band.node_at.dims().z, place);
   parallel_for(static_cast<std::int64_t>(slabs.size()), 1, [&](std::int64_t s) {
@@ -240,9 +232,8 @@ void follow_sheet(const ContactBand& band, const std::vector<float>& distances, 
   ConcurrentSets pieces(side.size());
   parallel_for(count, kNodesTogether, [&](std::int64_t i) {
     const auto n = static_cast<std::uint32_t>(i);
-    const ContactBand::Around around(band, n);
     for (int axis = 0; axis < 3; ++axis) {
-      const std::uint32_t m = around.at(axis, 1);
+      const std::uint32_t m = band.at(band.point(n) + unit_step(axis));
       if (m != ContactBand::kNone && side[m] == side[n]) pieces.join(n, m);
     }
   });
