@@ -133,6 +133,9 @@ std::string what_would_be_lost(const fs::path& path, FileFormat format) {
   if (file->size() == 0) return {};
   Found found = found_in(*file);
   if (found.own && found.format == format) return {};
+  if (found.own && format == FileFormat::kPictureOrMesh &&
+      (found.format == FileFormat::kPicture || found.format == FileFormat::kMesh))
+    return {};
   if (found.own && format == FileFormat::kEdition && found.format == FileFormat::kJson) return {};
   if (format == FileFormat::kPhantom && found.format == FileFormat::kPhantom)
     return "an HDF5 file that no phantom made";

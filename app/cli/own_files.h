@@ -6,7 +6,7 @@
 
 namespace dubsar::app {
 
-enum class FileFormat { kOther, kJson, kExa, kMesh, kPicture, kPhantom, kEdition };
+enum class FileFormat { kOther, kJson, kExa, kMesh, kPicture, kPhantom, kEdition, kPictureOrMesh };
 
 /// What would be lost if a file of `format` took the place of `path`: "a TIFF volume of 48 slices", "a PLY mesh that
 /// dubsar did not write". Empty: nothing; there is no such file, it is empty, or dubsar wrote it as that format, which

@@ -18,6 +18,7 @@ constexpr double kNodeMm = 1.0;    // of the sheet: some twelfth of the radius o
 constexpr double kReachMm = 2.5;   // of relief: seals are cut half of that
 constexpr double kMostMm = 400.0;  // of a strip: twice round the largest envelopes
 constexpr double kLeastMm = 2.0;
+constexpr double kNamedOffMm = 5.0;  // of a place that a person names: a thick fragment's half is more
 constexpr float kUnmeasured = std::numeric_limits<float>::quiet_NaN();
 
 double cubic(double a, double b, double c, double d, double t) {  // Catmull, Rom, 1974
@@ -272,6 +273,13 @@ Result<UnrolledBand> unroll(const TriMesh& mesh, const SealStrip& strip, const U
     if (mesh.triangle_inferred.empty() || mesh.triangle_inferred[t] == 0) measured.push_back(mesh.triangles[t]);
   DUBSAR_ASSIGN(const SurfacePlace from, nearest_place(mesh, strip.from_mm));
   DUBSAR_ASSIGN(const SurfacePlace to, nearest_place(mesh, strip.to_mm));
+  for (const auto& [named, on] : {std::pair{strip.from_mm, from.at_mm}, {strip.to_mm, to.at_mm}})
+    if (const double off = glm::distance(named, on); !(off <= kNamedOffMm))
+      return fail(
+          ErrorKind::kUsage,
+          "an end of a strip at ({:.1f}, {:.1f}, {:.1f}) mm found, {:.1f} mm from the surface; expected a place "
+          "on it, at most {:g} mm off, in mm of the scan, as the window shows it",
+          named.x, named.y, named.z, off, kNamedOffMm);
   const SmoothBase base(points, measured, options.base_radius_mm);
   DUBSAR_ASSIGN(const std::vector<BasePlace> line,
                 middle_line(base, {from.at_mm, to.at_mm, strip.height_mm}, from.normal, to.normal));

@@ -170,7 +170,7 @@ Verb add_seal_verb(Arguments program) {
   command.value("--part", request->part,
                 "which part: the envelope's outside where there is one (auto), tablet, all, ...");
   command.value("--unit", request->unit, kUnitHelp);
-  command.writes("-o,--output", request->out, FileFormat::kOther,
+  command.writes("-o,--output", request->out, FileFormat::kPictureOrMesh,
                  "PNG, TIFF or JPEG picture, or PLY, STL, OBJ or GLB surface. Unless given: beside IN, NAME_seal.png");
   command.footer(
       "Places are what the window shows for a point of the surface.\n"
