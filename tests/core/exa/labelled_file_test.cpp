@@ -79,6 +79,22 @@ TEST_F(LabelledFile, IsReadAsItWasWrittenWhateverTheLabels) {
   round_trip(random_labels({129, 5, 6}, 5), 5, 0.0f, 4);
 }
 
+TEST_F(LabelledFile, IsNotWrittenOfAnotherMeshThanItsLabelsGive) {
+  const SurfaceModel model = labelled_model(nested_labels(30, 0.2, 6), 6, 0.0f);
+  SilentProgress progress;
+  const auto refused = [&](const SurfaceModel& other) {
+    const auto blocks = encode_exa(other, progress);
+    return !blocks && blocks.error().kind == ErrorKind::kInternal;
+  };
+  EXPECT_FALSE(refused(model));
+  SurfaceModel turned = model;
+  std::swap(turned.mesh.quads[7][0], turned.mesh.quads[7][2]);
+  EXPECT_TRUE(refused(turned));
+  SurfaceModel doubled = model;
+  doubled.mesh.doubled.push_back({static_cast<std::uint32_t>(doubled.mesh.quads.size() - 1), 0, 3});
+  EXPECT_TRUE(refused(doubled));
+}
+
 TEST_F(LabelledFile, SaysWhichVersionItNeeds) {
   const std::vector<ExaBlock> blocks = encoded(labelled_model(nested_labels(30, 0.2, 1), 1, 0.0f));
   EXPECT_EQ(exa_major_of(blocks), 7);

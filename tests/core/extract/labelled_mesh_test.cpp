@@ -100,6 +100,15 @@ TEST(LabelledMesh, DrawnSmoothAndNestedVolumesGiveClosedManifoldsOfAllLabels) {
     expect_manifolds(LabelledScene(smooth_labels({64, 64, 64}, seed)).draw(seed));
 }
 
+TEST(LabelledMesh, TakesNoMoreMemoryThanItHolds) {
+  const BuiltMesh labelled = LabelledScene(nested_labels(40, 0.2, 5)).build();
+  const auto expect_full = [](const auto& items) { EXPECT_EQ(items.capacity(), items.size()); };
+  ASSERT_LT(labelled.first_contact, labelled.mesh.quads.size());
+  expect_full(labelled.mesh.quads);
+  expect_full(labelled.mesh.incident);
+  EXPECT_LE(labelled.mesh.positions.capacity(), labelled.unlabelled.size() + labelled.cells.size());
+}
+
 TEST(LabelledMesh, EveryGridEdgeBetweenTwoLabelsHasOneXQuadWithItsLabels) {
   const Labels volume = random_labels({9, 11, 70}, 4);
   const BuiltMesh labelled = LabelledScene(volume).build();
