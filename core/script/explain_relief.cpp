@@ -39,11 +39,14 @@ double level_at(const WedgeSite& site, double x, double y) {
 
 ReliefExplanation::ReliefExplanation(SurfaceLevels& surface, const WedgeScale& scale,
                                      const std::vector<DeepPlace>& places)
-    : fine_(&surface.fine()), scale_(scale), sites_(places.size()), fits_(places.size()) {
-  const PatchCells& cells = surface.for_width(scale.width_mm);
+    : fine_(&surface.fine()),
+      cells_(&surface.for_width(scale.width_mm)),
+      scale_(scale),
+      sites_(places.size()),
+      fits_(places.size()) {
   parallel_for(static_cast<std::int64_t>(places.size()), 4, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
-    sites_[k] = wedge_site(cells, scale, places[k]);
+    sites_[k] = wedge_site(*cells_, scale, places[k]);
     fit_alone(k);
   });
   find_neighbours();
@@ -100,21 +103,24 @@ void ReliefExplanation::find_neighbours() {
   }
 }
 
+glm::dvec3 ReliefExplanation::on_axis(std::size_t k, double along) const {
+  const WedgeSite& site = sites_[k];
+  const Imprint& i = fits_[k].imprint;
+  const double angle = i.p[Imprint::kAngle];
+  const double u = i.p[Imprint::kX] + along * std::cos(angle), v = i.p[Imprint::kY] + along * std::sin(angle);
+  return site.origin + scale_.width_mm * (site.right * u + site.up * v + site.out * level_at(site, u, v));
+}
+
 PlacedImprint ReliefExplanation::placed_at(std::size_t k) const {
   const WedgeSite& site = sites_[k];
   const Imprint& i = fits_[k].imprint;
   PlacedImprint out;
-  const double x = i.p[Imprint::kX], y = i.p[Imprint::kY], angle = i.p[Imprint::kAngle];
-  const double c = std::cos(angle), s = std::sin(angle);
-  const auto place = [&](double along) {
-    const double u = x + along * c, v = y + along * s;
-    return site.origin + scale_.width_mm * (site.right * u + site.up * v + site.out * level_at(site, u, v));
-  };
-  out.foot = place(0.0);
-  out.head = place(-i.back());
-  out.end = place(i.reach());
+  const double angle = i.p[Imprint::kAngle];
+  out.foot = on_axis(k, 0.0);
+  out.head = on_axis(k, -i.back());
+  out.end = on_axis(k, i.reach());
   out.normal = site.out;
-  out.along = c * site.right + s * site.up;
+  out.along = std::cos(angle) * site.right + std::sin(angle) * site.up;
   out.imprint = i;
   out.site = k;
   out.gain = fits_[k].gain;

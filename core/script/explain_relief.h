@@ -13,6 +13,11 @@ namespace dubsar {
 
 inline constexpr double kNoTurn = 1.0;
 
+/// On the clay (docs/edition.md), usual widths: T to the tail's end, and between the corners.
+struct WedgeOutline {
+  double reach = 0.0, width = 0.0;
+};
+
 /// An imprint at its place, mm.
 struct PlacedImprint {
   glm::dvec3 foot{0.0}, normal{0, 0, 1}, along{1, 0, 0};  ///< foot: on the writing surface, above T
@@ -27,6 +32,7 @@ struct PlacedImprint {
   double misfit = 0.0;   ///< median of what is left in its footprint, either way, of its depth
   double seen = 1.0;     ///< of its window
   double covered = 0.0;  ///< share of its footprint that others explain
+  WedgeOutline outline;
 };
 
 struct PressedPair {
@@ -51,9 +57,9 @@ class ReliefExplanation {
   using Surprise = std::function<double(const glm::dvec3& along, const glm::dvec3& normal, const Imprint& imprint)>;
   void prefer(Surprise surprise) { surprise_ = std::move(surprise); }
 
-  /// Depth, misfit and covered are left at what they are to begin with.
+  /// Depth, misfit, covered and outline are left at what they are to begin with.
   std::vector<PlacedImprint> placed() const;
-  /// With them. Cost: a millisecond each.
+  /// With them. Cost: some milliseconds each.
   std::vector<PlacedImprint> measured() const;
   /// Which of overlapping wedges was pressed after which: numbers in `placed`, of this explanation; what is not clear
   /// is left out. A later one is whole, and pushes clay into those before it: where they meet, these are shallower than
@@ -91,13 +97,23 @@ class ReliefExplanation {
   Second second_in(std::size_t k, bool both) const;
   void split(double cost);
   double gain_beside(std::size_t k, const Imprint& imprint, DepthSamples& samples) const;
+  /// A place of the writing surface so many usual widths from T along the tail, mm.
+  glm::dvec3 on_axis(std::size_t k, double along) const;
   PlacedImprint placed_at(std::size_t k) const;
   void measure(PlacedImprint& one) const;
+  /// What is seen of one wedge's outline, usual widths from T.
+  struct Outline {
+    double reach = 0.0, breadth = 0.0;  ///< 0: not seen
+    double least = 0.0, most = 0.0;     ///< the tail is still deep at one, level clay is seen at the other
+    bool seen = false;                  ///< the groove, where it ends
+  };
+  Outline outline_of(const PlacedImprint& one, const std::vector<Imprint>& drawn) const;
+  void draw_outlines(std::vector<PlacedImprint>& placed) const;
   bool deepest_vertex(const PlacedImprint& one, double& x, double& y, double& height) const;
 
   double doubt(const WedgeSite& site, const Imprint& imprint) const;
 
-  const PatchCells* fine_;
+  const PatchCells *fine_, *cells_;
   WedgeScale scale_;
   Surprise surprise_;
   std::vector<WedgeSite> sites_;

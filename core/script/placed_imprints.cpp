@@ -114,6 +114,7 @@ std::vector<PlacedImprint> ReliefExplanation::measured() const {
   std::vector<PlacedImprint> out = placed();
   parallel_for(static_cast<std::int64_t>(out.size()), 4,
                [&](std::int64_t i) { measure(out[static_cast<std::size_t>(i)]); });
+  draw_outlines(out);
   return out;
 }
 

@@ -12,6 +12,7 @@ class SurfaceLevels {
  public:
   /// Keeps no reference. Cost: some 50 ns a triangle.
   explicit SurfaceLevels(const TriMesh& mesh) { levels_.push_back(std::make_unique<PatchCells>(mesh)); }
+  explicit SurfaceLevels(PatchCells cells) { levels_.push_back(std::make_unique<PatchCells>(std::move(cells))); }
 
   /// The surface itself: of what is measured.
   const PatchCells& fine() const noexcept { return *levels_.front(); }

@@ -33,9 +33,9 @@ ScriptWedge measured_wedge(const PlacedImprint& placed, const WedgeScale& scale)
   const glm::dvec3 across = glm::cross(placed.normal, placed.along);
   out.normal = placed.normal;
   out.direction = placed.along;
-  out.width_mm = i.width() * scale.width_mm;
+  out.width_mm = placed.outline.width * scale.width_mm;
   out.depth_mm = placed.depth * scale.width_mm;
-  out.length_mm = (i.back() + i.reach()) * scale.width_mm;
+  out.length_mm = (i.back() + placed.outline.reach) * scale.width_mm;
   out.head_mm = placed.head;
   out.tail_mm = placed.end;
   out.corner_mm[0] = out.head_mm + 0.5 * out.width_mm * across;

@@ -12,10 +12,20 @@
 namespace dubsar {
 namespace {
 
+double share_of(std::vector<double> values, double share) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
 double middle_of(std::vector<double> values) {
   if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
+}
+
+std::string spread_of(const std::vector<double>& values) {
+  return fmt::format("{:.3f} ({:.2f} to {:.2f})", middle_of(values), share_of(values, 0.1), share_of(values, 0.9));
 }
 
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& out) {
@@ -88,6 +98,8 @@ WedgeScore judge_wedges(const phantom::Phantom& truth, std::span<const ScriptWed
     ++score.found_of_side[static_cast<std::size_t>(w.side)];
     score.kind_right += same_kind(f.kind, w.kind);
     score.depth_ratios.push_back(f.depth_mm / voxel / w.depth);
+    score.length_ratios.push_back(f.length_mm / voxel / glm::distance(w.place.head, w.place.end));
+    score.width_ratios.push_back(f.width_mm / voxel / (2.0 * w.head_half_width));
     score.direction_deg.push_back(degrees_between(f.direction, w.tail, w.outward));
     score.head_off_vox.push_back(glm::distance(f.head_mm / voxel, w.place.head));
     const glm::dvec3 half = w.head_half_width * glm::cross(w.outward, w.tail);
@@ -141,6 +153,8 @@ void WedgeScore::add(const WedgeScore& o) {
   pairs += o.pairs, pairs_told += o.pairs_told, pairs_right += o.pairs_right;
   join(pair_clear, o.pair_clear);
   join(depth_ratios, o.depth_ratios);
+  join(length_ratios, o.length_ratios);
+  join(width_ratios, o.width_ratios);
   join(direction_deg, o.direction_deg);
   join(head_off_vox, o.head_off_vox);
   const auto sum = [](std::vector<int>& to, const std::vector<int>& from) {
@@ -162,6 +176,7 @@ std::string WedgeScore::text() const {
       wanted, found, recall(), drawn, real, precision(), placed, kind_share(),
       found ? static_cast<double>(line_right) / found : 0.0, middle_of(depth_ratios), middle_of(off),
       middle_of(direction_deg), middle_of(head_off_vox), found ? std::sqrt(corner_squares / found) : 0.0);
+  out += fmt::format(" length ratio {}, width ratio {};", spread_of(length_ratios), spread_of(width_ratios));
   out += fmt::format(" of {} pairs order of {} told, {} right;", pairs, pairs_told, pairs_right);
   for (std::size_t k = 0; k < wanted_of_kind.size(); ++k)
     if (wanted_of_kind[k])

@@ -44,6 +44,8 @@ struct WedgeScore : WedgeCounts, PairCounts {
   int line_right = 0;  ///< of `found`: in the line that was found for its own; each line that was found is one of
                        ///< those pressed, no two the same
   std::vector<double> depth_ratios, direction_deg, head_off_vox;  ///< of `found`: measured over true, and errors
+  /// Of `found`: measured over what the stylus left, head to end and between the corners.
+  std::vector<double> length_ratios, width_ratios;
   double corner_squares = 0.0;  ///< of `found`: mean square of how far the corners of the head are off, voxels, summed
   std::vector<JudgedWedge> judged;  ///< one for each found wedge
   std::vector<int> missed;          ///< wedges of the phantom that were wanted and not found
