@@ -33,7 +33,7 @@ struct ClayEvidence {
   const std::vector<ClayCavity>& whole;
 };
 
-/// The cut. Borrows the band and the cavities. 24 bytes for each point of its bricks of 4x4x4, about 31 a node.
+/// The cut. Borrows the band and the cavities. 28 bytes for each place of its bricks of 4x4x4, about 36 a node.
 class ClayDivision {
  public:
   explicit ClayDivision(const ClayEvidence& evidence);

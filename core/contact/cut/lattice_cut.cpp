@@ -155,9 +155,11 @@ void LatticeCut::solve_ranges(const std::vector<std::uint32_t>& starts, bool fir
     ends[r] = points_with_arcs_out(starts[r], starts[r + 1]);
   });
   touched_.clear();
-  for (const auto& entry : graph_.tied) touched_.push_back(entry.first);
   for (const std::vector<std::uint32_t>& some : ends) touched_.insert(touched_.end(), some.begin(), some.end());
-  std::sort(touched_.begin(), touched_.end());
+  const auto at_sides = static_cast<std::ptrdiff_t>(touched_.size());
+  for (const auto& entry : graph_.tied) touched_.push_back(entry.first);
+  std::sort(touched_.begin() + at_sides, touched_.end());
+  std::inplace_merge(touched_.begin(), touched_.begin() + at_sides, touched_.end());
   time_ = *std::max_element(times.begin(), times.end());
 }
 

@@ -33,7 +33,7 @@ class LatticeCut {
   void set_height(std::uint32_t point, float height);
 
   /// Finds the cut, once. Points that fit either side equally well go to the sink side. Deterministic for any thread
-  /// count. 24 bytes for each place of a brick. kCancelled.
+  /// count. 28 bytes for each place of a brick. kCancelled.
   Result<void> solve(Progress& progress);
 
   bool on_source_side(std::uint32_t point) const noexcept { return graph_.points[point].label > 0; }

@@ -21,13 +21,14 @@ struct LatticeGraph {
   struct Point {
     std::int32_t terminal = 0;  ///< > 0: from the source, < 0: to the sink
     std::uint32_t time = 0;     ///< when the label was right
+    std::uint32_t up = 0;       ///< the parent
     /// On a tree: steps from the source, minus those to the sink, at some time; else 0. Before: the height.
     std::int16_t label = 0;
     std::uint8_t parent = kNoParent;  ///< a way, or one of the above
     std::uint8_t flags = 0;
     std::array<std::uint16_t, kWays> residual{};
   };
-  static_assert(sizeof(Point) == 24);
+  static_assert(sizeof(Point) == 28);
   /// An arc is a way of its point, or kTies + the index of a tie.
   struct Tie {
     std::uint32_t head, next;  ///< next of the same point; the sister is the other of the pair
@@ -60,7 +61,8 @@ struct LatticeGraph {
     const std::uint8_t parent = points[p].parent;
     return parent == kByTie ? kTies + tied.at(p).parent : parent;
   }
-  void set_parent(std::uint32_t p, std::uint32_t arc) {
+  void set_parent(std::uint32_t p, std::uint32_t arc, std::uint32_t up) {
+    points[p].up = up;
     points[p].parent = arc < kWays ? static_cast<std::uint8_t>(arc) : kByTie;
     if (arc >= kWays) tied.at(p).parent = arc - kTies;
   }

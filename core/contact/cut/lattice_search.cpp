@@ -117,11 +117,11 @@ LatticeSearch::Meeting LatticeSearch::grow(std::uint32_t p) {
     }
     if (there == 0) {
       set<kSource>(other, next, point.time);
-      graph_.set_parent(q, Graph::sister(arc));
+      graph_.set_parent(q, Graph::sister(arc), p);
       activate(q);
     } else if (other.time <= point.time && there > next) {
       set<kSource>(other, next, point.time);  // a shorter way to the terminal
-      graph_.set_parent(q, Graph::sister(arc));
+      graph_.set_parent(q, Graph::sister(arc), p);
     }
     return true;
   });
@@ -132,7 +132,7 @@ template <bool kSource>
 std::int32_t LatticeSearch::least_on_way(std::uint32_t p) {
   std::int32_t least = 0x7fffffff;
   while (graph_.points[p].parent != Graph::kTerminal) {
-    const std::uint32_t arc = graph_.parent(p), q = graph_.head(p, arc);
+    const std::uint32_t arc = graph_.parent(p), q = graph_.points[p].up;
     least = std::min(least, left_on<!kSource>(p, q, arc));
     p = q;
   }
@@ -142,7 +142,7 @@ std::int32_t LatticeSearch::least_on_way(std::uint32_t p) {
 template <bool kSource>
 void LatticeSearch::send(std::uint32_t p, std::int32_t flow) {
   while (graph_.points[p].parent != Graph::kTerminal) {
-    const std::uint32_t arc = graph_.parent(p), q = graph_.head(p, arc);
+    const std::uint32_t arc = graph_.parent(p), q = graph_.points[p].up;
     const std::uint32_t back = Graph::sister(arc);
     kSource ? graph_.add(p, arc, flow) : graph_.add(q, back, flow);
     if ((kSource ? graph_.add(q, back, -flow) : graph_.add(p, arc, -flow)) == 0) make_orphan(p);
@@ -185,7 +185,7 @@ void LatticeSearch::mark_way(std::uint32_t p, std::int32_t distance) {
 
 template <bool kSource>
 void LatticeSearch::adopt(std::uint32_t orphan) {
-  std::uint32_t best = Graph::kNoArc;
+  std::uint32_t best = Graph::kNoArc, best_up = 0;
   std::int32_t least = 0x7fffffff;
   each_arc(orphan, [&](std::uint32_t arc, std::uint32_t q) {
     const Graph::Point& other = graph_.points[q];
@@ -194,6 +194,7 @@ void LatticeSearch::adopt(std::uint32_t orphan) {
     if (!reaches_terminal(q, distance)) return true;
     if (distance < least) {
       best = arc;
+      best_up = q;
       least = distance;
     }
     mark_way<kSource>(q, distance);
@@ -201,7 +202,7 @@ void LatticeSearch::adopt(std::uint32_t orphan) {
   });
   if (best != Graph::kNoArc) {
     set<kSource>(graph_.points[orphan], least + 1, time_);
-    graph_.set_parent(orphan, best);
+    graph_.set_parent(orphan, best, best_up);
     return;
   }
   each_arc(orphan, [&](std::uint32_t arc, std::uint32_t q) {

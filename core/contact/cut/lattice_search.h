@@ -49,7 +49,7 @@ class LatticeSearch {
   void make_orphan(std::uint32_t p);
   template <bool kSource>
   void adopt(std::uint32_t orphan);
-  std::uint32_t up(std::uint32_t p) const { return graph_.head(p, graph_.parent(p)); }
+  std::uint32_t up(std::uint32_t p) const { return graph_.points[p].up; }
   bool reaches_terminal(std::uint32_t p, std::int32_t& distance) const;
   template <bool kSource>
   void mark_way(std::uint32_t p, std::int32_t distance);
