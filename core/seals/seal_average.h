@@ -21,11 +21,9 @@ struct AverageOptions {
   std::size_t first = 0;  ///< whose raster is the frame: the one that was laid flat with the least distortion
 };
 
-/// Impressions of one step. Each place is the mean of what lies there, folded by the turn: what shows figures counts
-/// by its figures against those of the others (worn places have none), what is broken away does not count, and what
-/// lies below the ground hardly. Each impression is then laid anew on the mean of the
-/// others (refined()). Deterministic, the same for any number of threads. kUsage-like conditions are the caller's:
-/// there is at least one impression.
+/// Impressions of one step. Each place is the mean of what lies there, folded by the turn, by the probability that each
+/// shows it (mean_of_views()). Each impression is then laid anew on the mean of the others (refined()). Deterministic,
+/// the same for any number of threads. kUsage-like conditions are the caller's: there is at least one impression.
 SealAverage average_seal(const std::vector<SealImpression>& impressions, const AverageOptions& options = {});
 
 }  // namespace dubsar

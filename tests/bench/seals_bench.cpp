@@ -288,7 +288,7 @@ int run_seals(int argc, char** argv) {
         "shown): {:.2f} times as good, {:.2f} if all that is shown were known exactly; any shows {:.3f} of the seal, "
         "drawn of that {:.4f} (best single {:.3f}); turn "
         "{:.2f} mm "
-        "({:.1f} deviations), likeness",
+        "(log of likelihoods {:.1f}), likeness",
         options.seed, std::sqrt(deviation), best, best_alone, all.rms, all.rms_shown, times, possible, shown,
         all.covered, covered, average.placing.turn_mm, average.placing.turn_sure);
     for (const double like : average.placing.likeness) fmt::print(" {:.1f}", like);

@@ -159,7 +159,7 @@ Verb add_seal_verb(Arguments program) {
       .one_word_each_time();
   command.value("--height", request->height_mm, "height of the impressions, across the rolling, mm (17)").positive();
   command.value("--turn", request->turn,
-                "circumference of the seal in mm; none (default); find: where impressions tell it, which is not sure");
+                "circumference of the seal in mm; none (default); find: where impressions tell it");
   command.value("--as", request->as, "as its impression is (default), or as the stone: mirrored, and sunk")
       .one_of({"impression", "stone"});
   command.value("--step", request->step_mm, "of the raster, mm (half of the surface's usual edge, .05 to .25)")
