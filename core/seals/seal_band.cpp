@@ -57,8 +57,8 @@ Result<std::vector<BasePlace>> middle_line(const SmoothBase& base, const SealStr
   const auto start = base.under(strip.from_mm, from_normal), end = base.under(strip.to_mm, to_normal);
   if (!start || !end)
     return fail(ErrorKind::kUsage,
-                "no surface near the ends of the strip, ({:.1f}, {:.1f}, {:.1f}) and ({:.1f}, {:.1f}, "
-                "{:.1f}) mm; name places on it",
+                "too little measured surface around the ends of a strip, ({:.1f}, {:.1f}, {:.1f}) and ({:.1f}, {:.1f}, "
+                "{:.1f}) mm, to lay a band on; expected ends with measured surface for some millimetres on all sides",
                 strip.from_mm.x, strip.from_mm.y, strip.from_mm.z, strip.to_mm.x, strip.to_mm.y, strip.to_mm.z);
   const glm::dvec3 chord = end->at_mm - start->at_mm;
   glm::dvec3 stands = glm::cross(chord, start->normal + end->normal);
