@@ -1,5 +1,7 @@
 #include "core/filter/edge_spread.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -48,11 +50,38 @@ double plane_at(double share, double voxels) {
   return radius * std::clamp(u, -1.0, 1.0);
 }
 
-/// What the flat places of one fold say, by distance from the plane.
-struct Spread {
+/// Of a normal along an axis: less is across it, more is along it.
+constexpr double kAcross = 0.35, kAlong = 0.85;
+constexpr int kLeastDoubled = 100;  ///< places along an axis and across it, so that something can be said of both
+constexpr double kLeastValley = 0.12, kSureValley = 5.0;  ///< in uncertainties
+
+/// Shares of material by distance from the plane.
+struct Profile {
   std::array<double, kTwoSides> sum{}, count{};
   int places = 0;
-  std::vector<double> halves_apart;  ///< of each place: how far apart two halves of it put the plane
+
+  void add(const Profile& more) {
+    for (std::size_t b = 0; b < kTwoSides; ++b) {
+      sum[b] += more.sum[b];
+      count[b] += more.count[b];
+    }
+    places += more.places;
+  }
+  /// Mean of the slopes `bins` to either side of the middle.
+  double slope(int bins) const {
+    const auto share = [&](int b) {
+      return sum[static_cast<std::size_t>(b)] / std::max(count[static_cast<std::size_t>(b)], 1.0);
+    };
+    const auto between = [&](int b) { return (share(kBins + b - 1) - share(kBins + b)) / kBin; };
+    return 0.5 * (between(-bins) + between(bins));
+  }
+  double middle_slope() const { return (slope(0) + 2.0 * slope(1)) / 3.0; }
+};
+
+/// What the flat places of one fold say, by distance from the plane.
+struct Spread : Profile {
+  std::array<Profile, 3> across, along;  ///< an axis
+  std::vector<double> halves_apart;      ///< of each place: how far apart two halves of it put the plane
 
   double variance() const {
     double twice = 0.0;
@@ -128,9 +157,10 @@ class Group {
       apart[w] = plane_at(share(half[0], count[0]), all) - plane_at(share(half[1], count[1]), all);
       if (std::abs(apart[w]) > kMostTilt) return;
     }
-    ++spread.places;
     spread.halves_apart.push_back(apart[0]);
     spread.halves_apart.push_back(apart[1]);
+    Profile here;
+    here.places = 1;
     for (const Offset& o : ball_offsets) {
       const glm::dvec3 q(o.x, o.y, o.z);
       const double across = glm::dot(normal, q), d = across - plane;
@@ -138,8 +168,14 @@ class Group {
       const int bin = static_cast<int>(std::floor(d / kBin)) + kBins;
       if (bin < 0 || bin >= 2 * kBins) continue;
       const double v = (at(x + o.x, y + o.y, z + o.z) - air_) / contrast_;
-      spread.sum[static_cast<std::size_t>(bin)] += (v - empty) / (clay - empty);
-      ++spread.count[static_cast<std::size_t>(bin)];
+      here.sum[static_cast<std::size_t>(bin)] += (v - empty) / (clay - empty);
+      ++here.count[static_cast<std::size_t>(bin)];
+    }
+    spread.add(here);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double part = std::abs(normal[static_cast<int>(a)]);
+      if (part < kAcross) spread.across[a].add(here);
+      if (part > kAlong) spread.along[a].add(here);
     }
   }
 
@@ -154,11 +190,11 @@ class Group {
 
 Folds merge(Folds all, const Folds& more) {
   for (std::size_t f = 0; f < all.size(); ++f) {
-    for (std::size_t b = 0; b < all[f].sum.size(); ++b) {
-      all[f].sum[b] += more[f].sum[b];
-      all[f].count[b] += more[f].count[b];
+    all[f].add(more[f]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      all[f].across[a].add(more[f].across[a]);
+      all[f].along[a].add(more[f].along[a]);
     }
-    all[f].places += more[f].places;
     all[f].halves_apart.insert(all[f].halves_apart.end(), more[f].halves_apart.begin(), more[f].halves_apart.end());
   }
   return all;
@@ -176,6 +212,33 @@ int places_of(const Folds& folds) {
   return places;
 }
 
+/// Whether places across the axis rise in two steps and those along it do not.
+std::optional<DoubleEdge> double_edge(const Folds& folds, std::size_t axis) {
+  Profile across, along;
+  for (const Spread& fold : folds) {
+    across.add(fold.across[axis]);
+    along.add(fold.along[axis]);
+  }
+  if (across.places < kLeastDoubled || along.places < kLeastDoubled) return std::nullopt;
+  int step = 2;
+  for (int b = 3; b < kBins; ++b) step = across.slope(b) > across.slope(step) ? b : step;
+  DoubleEdge found{static_cast<int>(axis), 2.0 * kBin * step, 1.0 - across.middle_slope() / across.slope(step)};
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (const Spread& fold : folds) {
+    const Profile& some = fold.across[axis];
+    if (some.places < kLeastDoubled / kFolds) continue;
+    const double valley = some.slope(step) - some.middle_slope();
+    sum += valley;
+    squares += valley * valley;
+    ++count;
+  }
+  const double error =
+      std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)) / std::max(count - 1.0, 1.0));
+  if (count < 3.0 || found.valley < kLeastValley || sum / count < kSureValley * error) return std::nullopt;
+  if (along.middle_slope() < along.slope(step)) return std::nullopt;  // two layers, whichever way they lie
+  return found;
+}
+
 std::optional<EdgeSpread> summary(const Folds& folds) {
   EdgeSpread result;
   result.places = places_of(folds);
@@ -183,10 +246,7 @@ std::optional<EdgeSpread> summary(const Folds& folds) {
   Spread whole;
   for (const Spread& fold : folds) {
     if (fold.places == 0) continue;
-    for (std::size_t b = 0; b < kTwoSides; ++b) {
-      whole.sum[b] += fold.sum[b];
-      whole.count[b] += fold.count[b];
-    }
+    whole.add(fold);
     variances.push_back(fold.variance());
     for (const double way : fold.halves_apart) apart.push_back(std::abs(way));
   }
@@ -200,6 +260,10 @@ std::optional<EdgeSpread> summary(const Folds& folds) {
   // Of all places at once: that of the folds' median scatters by twice as much with where they lie on the grid.
   result.variance = whole.variance() - off * off;
   if (result.variance <= std::max(kLeastVariance, kSignificant * result.uncertainty)) return std::nullopt;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (const auto doubled = double_edge(folds, axis);
+        doubled && (!result.doubled || doubled->valley > result.doubled->valley))
+      result.doubled = doubled;
   return result;
 }
 
@@ -242,6 +306,14 @@ std::vector<std::int64_t> groups_through(std::int64_t depth, std::int64_t most, 
 }
 
 }  // namespace
+
+std::string describe(const DoubleEdge& edge) {
+  return fmt::format(
+      "edges across {0} rise in two steps, about {1:.1f} voxels apart, and those along it in one: the axis of rotation "
+      "(along {0}) was some {2:.2f} voxels from where the reconstruction took it, which is not undone; reconstruct the "
+      "scan anew with the right axis",
+      "xyz"[edge.axis], edge.apart, 0.5 * edge.apart);
+}
 
 Result<std::optional<EdgeSpread>> measure_edge_spread(SlabSource& source, double air, double material,
                                                       Progress& progress) {

@@ -115,6 +115,10 @@ struct Run {
   }
 
   Result<void> find() {
+    if (const auto& blur = imported.facts.blur; blur && blur->doubled) {
+      imported.facts.warnings.push_back(describe(*blur->doubled));
+      log(LogLevel::kWarning, imported.facts.warnings.back());
+    }
     DUBSAR_ASSIGN(found, find_surface(options, imported, half, run));
     plan.run.vertices = static_cast<double>(found.sampled.samples.offsets.size());
     return check_fits(plan.run, plan.room, RunStage::kMesh);

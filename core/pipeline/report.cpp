@@ -60,7 +60,11 @@ json blur_json(const std::optional<EdgeSpread>& blur) {
   return {{"deviation_vox", std::sqrt(blur->variance)},
           {"variance_vox2", blur->variance},
           {"uncertainty_vox2", blur->uncertainty},
-          {"places", blur->places}};
+          {"places", blur->places},
+          {"double_edges", blur->doubled ? json{{"axis", std::string(1, "xyz"[blur->doubled->axis])},
+                                                {"apart_vox", blur->doubled->apart},
+                                                {"text", describe(*blur->doubled)}}
+                                         : json(nullptr)}};
 }
 
 json levels_json(const std::optional<LocalLevels>& levels) {
