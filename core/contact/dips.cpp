@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <utility>
 
 #include "core/base/numbers/median.h"
 #include "core/base/system/parallel.h"
@@ -249,25 +250,44 @@ bool BandDensity::covers(const ContactBand& band) const {
 }
 
 Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& source, Progress& progress, int around) {
+  BandDensity density;
+  DUBSAR_TRY(density.follow(band, source, progress, {around, around}));
+  density.low_pass();
+  return density;
+}
+
+Result<void> BandDensity::follow(const ContactBand& band, SlabSource& source, Progress& progress, Around around) {
   const Dims d = source.dims();
   DUBSAR_CHECK(d == band.node_at.dims());
-  const std::vector<BrickPlace> places = bricks_around(band, around);
-  BrickMap<float> raw(d, 0.0f), smooth(d, 0.0f);
-  for (BrickMap<float>* const map : {&raw, &smooth}) {  // all are there before threads write
-    map->reserve(places.size());
-    for (const auto& [bx, by, bz] : places) map->add_brick(bx, by, bz);
-  }
+  if (raw_.dims() != d) raw_ = BrickMap<float>(d, 0.0f);
+  const auto is_there = [&](const BrickPlace& b) { return raw_.has_brick(b[0], b[1], b[2]); };
+  std::vector<bool> is_read(static_cast<std::size_t>(raw_.bricks().z), false);  // layers of bricks
+  for (const BrickPlace& b : bricks_around(band, around.least))
+    if (!is_there(b)) is_read[static_cast<std::size_t>(b[2])] = true;
+  if (std::ranges::count(is_read, true) == 0) return {};
+  smooth_ = BrickMap<float>({}, 0.0f);
+  std::vector<BrickPlace> places = bricks_around(band, around.room);
+  std::erase_if(places, [&](const BrickPlace& b) { return !is_read[static_cast<std::size_t>(b[2])] && !is_there(b); });
+  BrickMap<float> raw(d, 0.0f);  // all bricks are there before threads write
+  raw.reserve(places.size());
+  for (const auto& [bx, by, bz] : places) raw.add_brick(bx, by, bz);
   std::vector<float> slab;
   progress.begin("contact density", static_cast<std::int64_t>(places.size()), "brick");
   for (std::size_t first = 0, end = 0; first < places.size(); first = end) {
     if (progress.cancelled()) return cancelled_error();
-    while (end < places.size() && places[end][2] == places[first][2]) ++end;
-    const std::int64_t z0 = places[first][2] * kEdge, z1 = std::min(z0 + kEdge, d.z);
-    slab.resize(static_cast<std::size_t>((z1 - z0) * d.slice()));
-    DUBSAR_TRY(source.read(z0, z1, slab));
+    const std::int64_t layer = places[first][2], z0 = layer * kEdge, z1 = std::min(z0 + kEdge, d.z);
+    while (end < places.size() && places[end][2] == layer) ++end;
+    if (is_read[static_cast<std::size_t>(layer)]) {
+      slab.resize(static_cast<std::size_t>((z1 - z0) * d.slice()));
+      DUBSAR_TRY(source.read(z0, z1, slab));
+    }
     parallel_for(static_cast<std::int64_t>(end - first), 16, [&](std::int64_t i) {
       const auto [bx, by, bz] = places[first + static_cast<std::size_t>(i)];
       float* const brick = raw.brick(bx, by, bz);
+      if (const float* const known = std::as_const(raw_).brick(bx, by, bz)) {
+        std::copy_n(known, kEdge * kEdge * kEdge, brick);
+        return;
+      }
       const std::int64_t x = bx * kEdge, y = by * kEdge, rows = std::min(kEdge, d.y - y),
                          length = std::min(kEdge, d.x - x);
       for (std::int64_t z = z0; z < z1; ++z)
@@ -277,16 +297,31 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
     });
     progress.advance(static_cast<std::int64_t>(end - first));
   }
+  progress.end();
+  raw_ = std::move(raw);
+  return {};
+}
+
+void BandDensity::low_pass() {
+  const Dims d = raw_.dims(), bricks = raw_.bricks();
+  std::vector<BrickPlace> places;
+  for (std::int64_t z = 0; z < bricks.z; ++z)
+    for (std::int64_t y = 0; y < bricks.y; ++y)
+      for (std::int64_t x = 0; x < bricks.x; ++x)
+        if (raw_.has_brick(x, y, z)) places.push_back({x, y, z});
+  smooth_ = BrickMap<float>(d, 0.0f);
+  smooth_.reserve(places.size());
+  for (const auto& [bx, by, bz] : places) smooth_.add_brick(bx, by, bz);
   parallel_for(static_cast<std::int64_t>(places.size()), 8, [&](std::int64_t i) {
     const auto [bx, by, bz] = places[static_cast<std::size_t>(i)];
     using Raw = Block<float, 1>;
     Raw block;
-    block.fill({bx * kEdge, by * kEdge, bz * kEdge}, raw);
+    block.fill({bx * kEdge, by * kEdge, bz * kEdge}, raw_);
     // In place: what stands before a value was filtered already, and is not needed any more.
     for (const std::size_t step : {Raw::place(1, 0, 0), Raw::place(0, 1, 0), Raw::place(0, 0, 1)})
       for (std::size_t k = 0; k + 2 * step < block.value.size(); ++k)
         block.value[k] = 0.25f * (block.value[k] + block.value[k + 2 * step]) + 0.5f * block.value[k + step];
-    float* const brick = smooth.brick(bx, by, bz);
+    float* const brick = smooth_.brick(bx, by, bz);
     const auto points = [](std::int64_t b, std::int64_t end) {
       return static_cast<int>(std::min(kEdge, end - b * kEdge));
     };
@@ -294,8 +329,6 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
       for (int y = 0; y < points(by, d.y); ++y)
         std::copy_n(block.value.begin() + Raw::place(0, y, z), points(bx, d.x), brick + (z * kEdge + y) * kEdge);
   });
-  progress.end();
-  return BandDensity(std::move(raw), std::move(smooth));
 }
 
 Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density,

@@ -18,9 +18,19 @@ class BandDensity {
   /// has the band's grid, unfiltered: the less it was smoothed, the more is left of a film. Errors of the source,
   /// kCancelled.
   static Result<BandDensity> read(const ContactBand& band, SlabSource& source, Progress& progress, int around = 1);
+  /// Bricks on all sides of a band's: layers of bricks where one of `least` is missing are read, to `room`.
+  struct Around {
+    int least = 1, room = 1;
+  };
+  /// The same for a band that has moved: what is there already and lies in that room stays, layers (of 8 slices) where
+  /// nothing is missing are not read. raw() alone, until low_pass(). Holds both, old and new, meanwhile; unchanged
+  /// after an error.
+  Result<void> follow(const ContactBand& band, SlabSource& source, Progress& progress, Around around);
+  /// Makes get() and brick() of all that raw() has.
+  void low_pass();
   /// Is all there that read() would have read for that band of the same grid?
   bool covers(const ContactBand& band) const;
-  /// Low-passed by [1 2 1]/4 per axis.
+  /// Low-passed by [1 2 1]/4 per axis; 0 before low_pass().
   float get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return smooth_.get(x, y, z); }
   /// The values of a brick as get() has them (BrickMap::brick()).
   const float* brick(std::int64_t bx, std::int64_t by, std::int64_t bz) const noexcept {
@@ -34,7 +44,6 @@ class BandDensity {
   BandDensity() : raw_({}, 0.0f), smooth_({}, 0.0f) {}
 
  private:
-  BandDensity(BrickMap<float> raw, BrickMap<float> smooth) : raw_(std::move(raw)), smooth_(std::move(smooth)) {}
   BrickMap<float> raw_, smooth_;
 };
 
@@ -48,7 +57,7 @@ struct Dips {
   /// Of each node: how much denser the clay on both sides is on average than a disk through the node, at the best of
   /// the directions across the contact, in deviations of what clay without an interface shows.
   std::vector<float> strength;
-  std::vector<float> density;  ///< of that disk; empty: it does not say where the contact is
+  std::vector<float> density;  ///< low-passed, of that disk; empty: it does not say where the contact is
   float deviation = 0.0f;      ///< of the noise in `strength`, density
   PlainClay plain{};           ///< what chance makes of it
 };

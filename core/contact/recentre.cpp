@@ -220,15 +220,17 @@ class HeightField {
   BrickMap<float> heights_;
 };
 
-struct Ways {
-  std::vector<float> of_sample;  ///< grid steps along its normal
-  BandDensity density;
-};
+/// Bricks that looks keep around what they look at: most samples move less than the reach, and are looked around as far
+/// the next time. Where two are there, what is traced afterwards (6 steps away at most, and one brick more) is mostly
+/// there as well.
+constexpr BandDensity::Around kKeptAround{2, 3}, kKeptAroundAtHalf{1, 3};
 
-Result<Ways> ways_to_films(const std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                           int bricks_around, Progress& progress) {
+/// The way of each sample along its normal, grid steps. `values`: what is kept of `density` between looks.
+Result<std::vector<float>> ways_to_films(const std::vector<PatchPoint>& samples, const BitVolume& inside,
+                                         SlabSource& density, BandDensity& values, BandDensity::Around kept,
+                                         Progress& progress) {
   DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, thinned(samples, kThinned), kReach, progress));
-  DUBSAR_ASSIGN(BandDensity values, BandDensity::read(band, density, progress, bricks_around));
+  DUBSAR_TRY(values.follow(band, density, progress, kept));
   DUBSAR_ASSIGN(const Dips dips, find_dips(band, inside, values, progress));
   DUBSAR_ASSIGN(const std::vector<ClaySide> side, ClayDivision({band, dips, {}, {}, {}}).sides(progress));
   const HeightField heights(samples, grounds_of(band, inside, dips, side));
@@ -237,7 +239,7 @@ Result<Ways> ways_to_films(const std::vector<PatchPoint>& samples, const BitVolu
     const auto i = static_cast<std::size_t>(k);
     ways[i] = heights.at(samples[i].position);
   });
-  return Ways{std::move(ways), std::move(values)};
+  return ways;
 }
 
 /// Returns the longest way. Samples at a rim leave others behind, from where they were on: there the surface's parts
@@ -268,10 +270,8 @@ Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, Co
   std::vector<PatchPoint> left_behind;
   Recentred recentred;
   for (int k = 0; k < most_looks; ++k) {
-    recentred.density.reset();
-    DUBSAR_ASSIGN(Ways ways, look(samples));
-    recentred.density.emplace(std::move(ways.density));
-    if (move_along_normals(samples, ways.of_sample, scale, left_behind) <= scale * kFar) break;
+    DUBSAR_ASSIGN(const std::vector<float> ways, look(samples));
+    if (move_along_normals(samples, ways, scale, left_behind) <= scale * kFar) break;
   }
   for (std::size_t i = 0; i < before.size(); ++i)
     recentred.longest = std::max(recentred.longest, glm::distance(before[i].position, samples[i].position));
@@ -283,22 +283,23 @@ Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, Co
 
 Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
                                    Progress& progress, ContactRules rules) {
-  constexpr int kRoom = 3;  // bricks: most samples move less than the reach, and are looked around as far then
-  return follow_films(samples, 1.0f, rules, [&](const std::vector<PatchPoint>& from) {
-    return ways_to_films(from, inside, density, kRoom, progress);
-  });
+  BandDensity values;
+  DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 1.0f, rules, [&](const std::vector<PatchPoint>& from) {
+                  return ways_to_films(from, inside, density, values, kKeptAround, progress);
+                }));
+  recentred.density = std::move(values);
+  return recentred;
 }
 
 Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
                                            SlabSource& density, Progress& progress, ContactRules rules) {
   HalfResolutionSource half(density);
   const BitVolume inside_half = halved_signs(inside, half.dims());
-  DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 2.0f, rules, [&](std::vector<PatchPoint> from) {
-                  for (PatchPoint& sample : from) sample.position = halved(sample.position);
-                  return ways_to_films(from, inside_half, half, 1, progress);
-                }));
-  recentred.density.reset();  // of another grid
-  return recentred;
+  BandDensity values;
+  return follow_films(samples, 2.0f, rules, [&](std::vector<PatchPoint> from) {
+    for (PatchPoint& sample : from) sample.position = halved(sample.position);
+    return ways_to_films(from, inside_half, half, values, kKeptAroundAtHalf, progress);
+  });
 }
 
 }  // namespace dubsar

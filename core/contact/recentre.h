@@ -2,7 +2,6 @@
 // The smooth patches over a large contact miss it: fairing knows the rim and nothing of the middle. Where a film shows,
 // the guess moves to it before it is looked at closely.
 
-#include <optional>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -16,8 +15,8 @@
 namespace dubsar {
 
 struct Recentred {
-  float longest = 0.0f;                ///< way of a sample, grid steps
-  std::optional<BandDensity> density;  ///< what was read of the samples' grid: it may be enough for where they are now
+  float longest = 0.0f;  ///< way of a sample, grid steps
+  BandDensity density;   ///< raw, of the samples' grid: it may be enough for where they are now
 };
 
 /// Moves samples of the patches along their normals to the ground of the contact, from which wedges go down: the clay
@@ -30,7 +29,8 @@ Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVo
                                    Progress& progress, ContactRules rules = {});
 
 /// The same on a grid of half the resolution, for that of the scan: twice as far, an eighth of the points. About a
-/// third of what the contact takes afterwards, each time. Nothing is kept of what was read.
+/// third of what the contact takes afterwards, each time. What was read is kept from look to look, and freed at the
+/// end.
 Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
                                            SlabSource& density, Progress& progress, ContactRules rules = {});
 

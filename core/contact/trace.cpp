@@ -86,10 +86,13 @@ Result<void> lay(SurfaceModel& model, const DividedClay& clay, const ContactShee
 }
 
 /// What is `known` of the density, where that is enough.
-Result<BandDensity> density_of(const ContactBand& band, std::optional<BandDensity> known, SlabSource& density,
-                               Progress& progress) {
-  if (known && known->covers(band)) return std::move(*known);
-  return BandDensity::read(band, density, progress);
+Result<BandDensity> density_of(const ContactBand& band, BandDensity known, SlabSource& density, Progress& progress) {
+  if (!known.covers(band)) {
+    known = {};
+    return BandDensity::read(band, density, progress);
+  }
+  known.low_pass();
+  return known;
 }
 
 }  // namespace

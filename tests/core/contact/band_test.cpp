@@ -65,5 +65,53 @@ TEST(BandDensity, KeptWithRoomIsWhatWouldBeReadForABandThatHasMoved) {
   EXPECT_NE(read.get(20, 20, 26), 0.0f);
 }
 
+/// Counts the slices that are read.
+class CountedSource final : public SlabSource {
+ public:
+  explicit CountedSource(SlabSource& source) : source_(source) {}
+  Dims dims() const noexcept override { return source_.dims(); }
+  const GridFrame& frame() const noexcept override { return source_.frame(); }
+  Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override {
+    slices += z_end - z_begin;
+    return source_.read(z_begin, z_end, out);
+  }
+  std::int64_t slices = 0;
+
+ private:
+  SlabSource& source_;
+};
+
+TEST(BandDensity, KeptFromBandToBandIsWhatIsReadAnew) {
+  Volume<float> volume(Dims{kEdge, kEdge, kEdge});
+  for (std::int64_t i = 0; i < volume.voxels.size(); ++i)
+    volume.voxels[static_cast<std::size_t>(i)] = static_cast<float>(i * 7919 % 1013 + 1);
+  VolumeSource whole(volume);
+  CountedSource source(whole);
+  SilentProgress progress;
+  BandDensity kept;
+  struct Look {
+    float plane;
+    std::int64_t slices;  ///< that it has to read: layers of 8 where nothing was
+  };
+  for (const Look look : {Look{5.5f, 24}, Look{7.5f, 0}, Look{27.5f, 16}, Look{29.5f, 0}, Look{9.5f, 16}}) {
+    const ContactBand band = flat_band(3.0f, look.plane);
+    source.slices = 0;
+    ASSERT_TRUE(kept.follow(band, source, progress, {1, 1}).has_value());
+    EXPECT_EQ(source.slices, look.slices) << look.plane;
+    ASSERT_TRUE(kept.covers(band));
+    BandDensity here = kept;
+    here.low_pass();
+    const BandDensity anew = BandDensity::read(band, whole, progress).value();
+    constexpr int kLooks = 7;  // as far as dips look from a node
+    for (const ContactBand::Node& node : band.nodes) {
+      ASSERT_EQ(here.get(node.x, node.y, node.z), anew.get(node.x, node.y, node.z));
+      ASSERT_NE(here.get(node.x, node.y, node.z), 0.0f);
+      for (int z = node.z - kLooks; z <= node.z + kLooks; ++z)
+        for (int x = node.x - kLooks; x <= node.x + kLooks; x += 2)
+          ASSERT_EQ(kept.raw().get(x, node.y, z), anew.raw().get(x, node.y, z)) << x << ' ' << node.y << ' ' << z;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dubsar
