@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/contact/dips.h"
+#include "tests/core/contact/counted_source.h"
 
 namespace dubsar {
 namespace {
@@ -64,22 +65,6 @@ TEST(BandDensity, KeptWithRoomIsWhatWouldBeReadForABandThatHasMoved) {
         ASSERT_EQ(kept.get(x, node.y, z), read.get(x, node.y, z)) << x << ' ' << node.y << ' ' << z;
   EXPECT_NE(read.get(20, 20, 26), 0.0f);
 }
-
-/// Counts the slices that are read.
-class CountedSource final : public SlabSource {
- public:
-  explicit CountedSource(SlabSource& source) : source_(source) {}
-  Dims dims() const noexcept override { return source_.dims(); }
-  const GridFrame& frame() const noexcept override { return source_.frame(); }
-  Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override {
-    slices += z_end - z_begin;
-    return source_.read(z_begin, z_end, out);
-  }
-  std::int64_t slices = 0;
-
- private:
-  SlabSource& source_;
-};
 
 TEST(BandDensity, KeptFromBandToBandIsWhatIsReadAnew) {
   Volume<float> volume(Dims{kEdge, kEdge, kEdge});

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/core/contact/counted_source.h"
+
 namespace dubsar {
 namespace {
 
@@ -38,13 +40,17 @@ struct Moved {
   float told = 0.0f;
   std::vector<PatchPoint> samples;
 };
-Moved moved(const Volume<float>& volume, decltype(recentre_samples)* recentre = recentre_samples_at_half,
-            std::vector<PatchPoint> samples = flat_patch()) {
+BitVolume signs_of(const Volume<float>& volume) {
   BitVolume inside(volume.dims);
   for (std::int64_t z = 0, i = 0; z < kEdge; ++z)
     for (std::int64_t y = 0; y < kEdge; ++y)
       for (std::int64_t x = 0; x < kEdge; ++x, ++i)
         inside.set(x, y, z, volume.voxels[static_cast<std::size_t>(i)] > 0.0f);
+  return inside;
+}
+Moved moved(const Volume<float>& volume, decltype(recentre_samples)* recentre = recentre_samples_at_half,
+            std::vector<PatchPoint> samples = flat_patch()) {
+  const BitVolume inside = signs_of(volume);
   VolumeSource source(volume);
   SilentProgress progress;
   Moved out{0.0f, std::move(samples)};
@@ -175,6 +181,33 @@ TEST(RecentreSamples, LooksForNoClayBeyondTheEndOfTheGrid) {
   for (PatchPoint& s : samples) s.position.z = kTop;
   const Moved found = moved(volume, recentre_samples, samples);
   for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_NEAR(found.samples[i].position.z, kTop, 1.0f);
+}
+
+TEST(RecentreSamples, WhatIsKeptBetweenLooksIsWhatIsReadAnewForEach) {
+  const auto tilted = [](float x, float) { return kPatch + 10.0f + 0.35f * (x - 64.0f); };
+  const Volume<float> volume = clay(0.3f, tilted, 67, 0.06f);
+  const BitVolume inside = signs_of(volume);
+  SilentProgress progress;
+  for (const auto recentre : {recentre_samples, recentre_samples_at_half}) {
+    const bool half = recentre == recentre_samples_at_half;
+    VolumeSource whole(volume);
+    CountedSource kept_source(whole), anew_source(whole);
+    std::vector<PatchPoint> kept = flat_patch();
+    std::erase_if(kept, [](const PatchPoint& s) { return !amid(s); });
+    std::vector<PatchPoint> anew = kept;
+    ASSERT_TRUE(recentre(kept, inside, kept_source, progress, {}).has_value());
+    int looks = 0;
+    for (float longest = INFINITY; looks < 4 && longest > (half ? 12.0f : 6.0f); ++looks)
+      longest =
+          recentre(anew, inside, anew_source, progress, ContactRules().without(ContactRule::kLooks)).value().longest;
+    ASSERT_GE(looks, 2);
+    ASSERT_EQ(kept.size(), anew.size());
+    for (std::size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i].position, anew[i].position) << i;
+    if (half) {
+      EXPECT_LE(kept_source.slices, kEdge) << "once, in all looks";
+    }
+    EXPECT_LT(kept_source.slices, anew_source.slices);
+  }
 }
 
 }  // namespace
