@@ -256,17 +256,17 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
   return density;
 }
 
-Result<void> BandDensity::follow(const ContactBand& band, SlabSource& source, Progress& progress, Around around) {
+Result<void> BandDensity::follow(const ContactBand& band, SlabSource& source, Progress& progress, Room room) {
   const Dims d = source.dims();
   DUBSAR_CHECK(d == band.node_at.dims());
   if (raw_.dims() != d) raw_ = BrickMap<float>(d, 0.0f);
   const auto is_there = [&](const BrickPlace& b) { return raw_.has_brick(b[0], b[1], b[2]); };
   std::vector<bool> is_read(static_cast<std::size_t>(raw_.bricks().z), false);  // layers of bricks
-  for (const BrickPlace& b : bricks_around(band, around.least))
+  for (const BrickPlace& b : bricks_around(band, room.least))
     if (!is_there(b)) is_read[static_cast<std::size_t>(b[2])] = true;
   if (std::ranges::count(is_read, true) == 0) return {};
   smooth_ = BrickMap<float>({}, 0.0f);
-  std::vector<BrickPlace> places = bricks_around(band, around.room);
+  std::vector<BrickPlace> places = bricks_around(band, room.most);
   std::erase_if(places, [&](const BrickPlace& b) { return !is_read[static_cast<std::size_t>(b[2])] && !is_there(b); });
   BrickMap<float> raw(d, 0.0f);  // all bricks are there before threads write
   raw.reserve(places.size());

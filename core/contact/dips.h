@@ -18,14 +18,14 @@ class BandDensity {
   /// has the band's grid, unfiltered: the less it was smoothed, the more is left of a film. Errors of the source,
   /// kCancelled.
   static Result<BandDensity> read(const ContactBand& band, SlabSource& source, Progress& progress, int around = 1);
-  /// Bricks on all sides of a band's: layers of bricks where one of `least` is missing are read, to `room`.
-  struct Around {
-    int least = 1, room = 1;
+  /// Bricks on all sides of a band's: layers of bricks where one of `least` is missing are read, to `most`.
+  struct Room {
+    int least = 1, most = 1;
   };
   /// The same for a band that has moved: what is there already and lies in that room stays, layers (of 8 slices) where
   /// nothing is missing are not read. raw() alone, until low_pass(). Holds both, old and new, meanwhile; unchanged
   /// after an error.
-  Result<void> follow(const ContactBand& band, SlabSource& source, Progress& progress, Around around);
+  Result<void> follow(const ContactBand& band, SlabSource& source, Progress& progress, Room room);
   /// Makes get() and brick() of all that raw() has.
   void low_pass();
   /// Is all there that read() would have read for that band of the same grid?

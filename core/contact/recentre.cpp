@@ -223,11 +223,11 @@ class HeightField {
 /// Bricks that looks keep around what they look at: most samples move less than the reach, and are looked around as far
 /// the next time. Where two are there, what is traced afterwards (6 steps away at most, and one brick more) is mostly
 /// there as well.
-constexpr BandDensity::Around kKeptAround{2, 3}, kKeptAroundAtHalf{1, 3};
+constexpr BandDensity::Room kKeptRoom{2, 3}, kKeptRoomAtHalf{1, 3};
 
 /// The way of each sample along its normal, grid steps. `values`: what is kept of `density` between looks.
 Result<std::vector<float>> ways_to_films(const std::vector<PatchPoint>& samples, const BitVolume& inside,
-                                         SlabSource& density, BandDensity& values, BandDensity::Around kept,
+                                         SlabSource& density, BandDensity& values, BandDensity::Room kept,
                                          Progress& progress) {
   DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, thinned(samples, kThinned), kReach, progress));
   DUBSAR_TRY(values.follow(band, density, progress, kept));
@@ -285,7 +285,7 @@ Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVo
                                    Progress& progress, ContactRules rules) {
   BandDensity values;
   DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 1.0f, rules, [&](const std::vector<PatchPoint>& from) {
-                  return ways_to_films(from, inside, density, values, kKeptAround, progress);
+                  return ways_to_films(from, inside, density, values, kKeptRoom, progress);
                 }));
   recentred.density = std::move(values);
   return recentred;
@@ -298,7 +298,7 @@ Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, con
   BandDensity values;
   return follow_films(samples, 2.0f, rules, [&](std::vector<PatchPoint> from) {
     for (PatchPoint& sample : from) sample.position = halved(sample.position);
-    return ways_to_films(from, inside_half, half, values, kKeptAroundAtHalf, progress);
+    return ways_to_films(from, inside_half, half, values, kKeptRoomAtHalf, progress);
   });
 }
 
