@@ -147,9 +147,10 @@ Result<RaysLook> look_for_bent_rays(Overview overview, SlabSource& scan, StageRu
   run.clock.finish(std::max<std::int64_t>(1, quick.crossings));
   RaysLook look;
   look.levels = quick.levels;
-  for (const CurveTrial& trial : quick.trials)
-    if (look.seen.bend == 0.0 || 1.0 - trial.left() > look.seen.share)
-      look.seen = {trial.bend(), std::max(0.0, 1.0 - trial.left())};
+  for (const CurveTrial& trial : quick.trials) {
+    const double share = trial.elsewhere.sure() ? std::max(0.0, 1.0 - trial.left()) : 0.0;
+    if (look.seen.bend == 0.0 || share > look.seen.share) look.seen = {trial.bend(), share};
+  }
   if (!search.found) return look;
   const CurveTrial& found = *search.found;
   BentRays bent;

@@ -26,7 +26,7 @@ struct BentRays {
 /// The bend that would even clay and air most.
 struct SeenBend {
   double bend = 0.0;   ///< CurveTrial::bend(); 0: none was looked for
-  double share = 0.0;  ///< of the variance of clay and air that it would take away
+  double share = 0.0;  ///< of the variance of clay and air that it would take away; 0: nothing but by chance
 };
 
 struct RaysReport {

@@ -39,13 +39,15 @@ struct Moments {
     for (std::size_t i = 0; i < RayCurve::kTerms; ++i) sum += c[i] * sums[i];
     return sum / count;
   }
-  double deviation(const TermVector& c) const {
+  /// Without noise on average, and so by chance less than 0.
+  double variance(const TermVector& c) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < RayCurve::kTerms; ++i)
       for (std::size_t j = 0; j < RayCurve::kTerms; ++j) sum += c[i] * c[j] * product(i, j);
     const double m = mean(c);
-    return std::sqrt(std::max(0.0, sum - m * m));
+    return sum - m * m;
   }
+  double deviation(const TermVector& c) const { return std::sqrt(std::max(0.0, variance(c))); }
 };
 
 struct EvenEvidence {
@@ -56,14 +58,19 @@ struct EvenEvidence {
   }
 };
 
-/// Adds pixels that are sure in both planes of a pair: lanes 2 k and 2 k + 1.
-EvenEvidence gather(const std::vector<LaneImage>& images, const SureMaterials& sure, const PlaneStrides& at,
-                    std::span<const std::int64_t> planes);
+/// Of each pair of planes, lanes 2 k and 2 k + 1: pixels that are sure in both.
+std::vector<EvenEvidence> gather(const std::vector<LaneImage>& images, const SureMaterials& sure,
+                                 const PlaneStrides& at, std::span<const std::int64_t> planes);
+
+EvenEvidence sum_of(std::span<const EvenEvidence> pairs);
 
 /// Of the sum of images with weights c.
 Evenness evenness(const EvenEvidence& evidence, const TermVector& c);
 
 /// c >= 0 that brings the images nearest to 1 in clay and 0 in air.
 TermVector fit(const EvenEvidence& evidence);
+
+/// Of `pairs` in the order of their planes.
+Elsewhere look_elsewhere(std::span<const EvenEvidence> pairs);
 
 }  // namespace dubsar

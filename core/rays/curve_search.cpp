@@ -72,7 +72,8 @@ struct AxisView {
   float longest = 0.0F;
 };
 
-std::optional<CurveTrial> trial_by(const EvenEvidence& evidence, const AxisView& view) {
+std::optional<CurveTrial> trial_by(const std::vector<EvenEvidence>& pairs, const AxisView& view) {
+  const EvenEvidence evidence = sum_of(pairs);
   if (evidence.clay.count < kLeastSure || evidence.air.count < kLeastSure) return std::nullopt;
   CurveTrial trial;
   trial.axis = view.axis;
@@ -81,6 +82,7 @@ std::optional<CurveTrial> trial_by(const EvenEvidence& evidence, const AxisView&
   const TermVector c = fit(evidence);
   trial.after = evenness(evidence, c);
   trial.curve.coefficients = c;
+  trial.elsewhere = look_elsewhere(pairs);
   return trial;
 }
 
@@ -103,7 +105,7 @@ Result<std::optional<CurveTrial>> try_axis(const Volume<float>& volume, const Su
       view.longest = std::max(view.longest, *std::max_element(p.row(k), p.row(k) + p.row_floats()));
   }
   if (!(view.longest > 1.0F)) return std::nullopt;
-  EvenEvidence evidence;
+  std::vector<EvenEvidence> evidence;  // of each pair of planes
   LaneSinogram power = rays.sinogram();
   for (std::size_t group = 0; group < groups; ++group) {
     const LaneSinogram& p = view.recorded[group];
@@ -120,7 +122,8 @@ Result<std::optional<CurveTrial>> try_axis(const Volume<float>& volume, const Su
       rays.filter(power);
       rays.backproject(power, view.images[group][term]);
     }
-    evidence.add(gather(view.images[group], sure, view.at, view.planes_of(group)));
+    for (const EvenEvidence& pair : gather(view.images[group], sure, view.at, view.planes_of(group)))
+      evidence.push_back(pair);
   }
   return trial_by(evidence, view);
 }
@@ -159,7 +162,7 @@ Result<std::optional<CurveTrial>> try_stray(const SureMaterials& sure, AxisView&
     if (here.p > largest.p) largest.p = here.p, largest.stray = here.stray;
   }
   if (!(largest.x > 0.0F)) return std::nullopt;
-  EvenEvidence evidence;
+  std::vector<EvenEvidence> evidence;  // of each pair of planes
   LaneSinogram power = rays.sinogram();
   for (std::size_t group = 0; group < view.groups(); ++group) {
     for (std::size_t term = 0; term < RayCurve::kStrayTerms; ++term) {
@@ -173,7 +176,8 @@ Result<std::optional<CurveTrial>> try_stray(const SureMaterials& sure, AxisView&
       rays.filter(power);
       rays.backproject(power, view.images[group][RayCurve::kPlainTerms + term]);
     }
-    evidence.add(gather(view.images[group], sure, view.at, view.planes_of(group)));
+    for (const EvenEvidence& pair : gather(view.images[group], sure, view.at, view.planes_of(group)))
+      evidence.push_back(pair);
   }
   std::optional<CurveTrial> trial = trial_by(evidence, view);
   if (!trial) return trial;
@@ -217,8 +221,9 @@ Result<std::optional<CurveTrial>> search_stray(const Volume<float>& volume, cons
   if (best)
     log_debug(
         "scatter spread by {:.2f} of the width, clay absorbs {:.2f} along the longest ray: air {:.4f} -> {:.4f}, "
-        "clay {:.4f} -> {:.4f}",
-        best_spread, best_absorbed, best->before.air, best->after.air, best->before.clay, best->after.clay);
+        "clay {:.4f} -> {:.4f}; in other planes {:.2f} is left, {:.1f} errors less",
+        best_spread, best_absorbed, best->before.air, best->after.air, best->before.clay, best->after.clay,
+        best->elsewhere.left, best->elsewhere.gain / best->elsewhere.error);
   return best;
 }
 
@@ -242,11 +247,11 @@ bool touches_border(const SureMaterials& sure, const PlaneStrides& at) {
 bool CurveTrial::significant() const noexcept {
   // Without its first term a curve would take away details on short rays.
   return curve.coefficients[0] > 0.2 && bend() > kLeastBend && after.air < kMostAirLeft * before.air + 1e-3 &&
-         left() < kMostLeft;
+         left() < kMostLeft && elsewhere.sure() && elsewhere.left < kMostLeft;
 }
 
 Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margin, std::optional<TurnAxis> only,
-                                 std::shared_ptr<const ScatterField> known, Progress& progress) {
+                                 const std::shared_ptr<const ScatterField>& known, Progress& progress) {
   CurveSearch search;
   const Result<SureMaterials> sure = find_sure_materials(volume, margin);
   if (!sure || sure->air < kLeastSure || sure->clay < kLeastSure || !(sure->levels.contrast() > 0.0)) return search;
@@ -260,8 +265,11 @@ Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margi
     if (!trial) continue;
     search.trials.push_back(*trial);
     const char name = "xyz"[static_cast<int>(axis)];
-    log_debug("rays about {}: bent by {:.2f}, air {:.4f} -> {:.4f}, clay {:.4f} -> {:.4f} of the contrast", name,
-              trial->bend(), trial->before.air, trial->after.air, trial->before.clay, trial->after.clay);
+    log_debug(
+        "rays about {}: bent by {:.2f}, air {:.4f} -> {:.4f}, clay {:.4f} -> {:.4f} of the contrast; in other planes "
+        "{:.2f} is left, {:.1f} errors less",
+        name, trial->bend(), trial->before.air, trial->after.air, trial->before.clay, trial->after.clay,
+        trial->elsewhere.left, trial->elsewhere.gain / trial->elsewhere.error);
     if (trial->significant() && (!search.found || trial->left() < search.found->left())) search.found = *trial;
     if (known || (trial->bend() > kLeastBend && trial->left() < least_left)) {
       least_left = trial->left();

@@ -18,18 +18,31 @@ struct Evenness {
   double sum() const noexcept { return clay * clay + air * air; }  ///< of variances
 };
 
+/// What a curve that was fitted in some planes does in others, whose noise it has not seen: each half of the planes is
+/// made even by the curve of the other half.
+struct Elsewhere {
+  double left = 1.0;   ///< share of the variance of clay and air that is left there; may be less than 0 by noise
+  double gain = 0.0;   ///< variance that is taken away there, in parts of the contrast, squared
+  double error = 0.0;  ///< standard error of `gain`, by planes that are left out ([Efron 1982], the jackknife); 0:
+                       ///< there are too few planes to tell
+  /// Whether anything is taken away but by chance. Three errors: noise of 12 and 14 dB came to 2.0 (52 small scans in
+  /// 226 places), the surest curve of scanners from mild to strong to 6.2 and more (26 scans).
+  bool sure() const noexcept { return error > 0.0 && gain > 3.0 * error; }
+};
+
 /// The curve that makes a scan even if it was turned about `axis`.
 struct CurveTrial {
   TurnAxis axis = TurnAxis::kZ;
   RayCurve curve;
   std::shared_ptr<const ScatterField> stray = {};  ///< where the curve has a part by scatter
   Evenness before, after;
+  Elsewhere elsewhere;
   /// 1: rays are straight; the largest loss of contrast is its inverse.
   double bend() const noexcept { return 1.0 / curve.contrast(); }
   /// Share of the variance of clay and air that is left.
   double left() const noexcept { return after.sum() / before.sum(); }
-  /// Bent by more than a tenth, clay and air together become more even by a fifth of their variance, and air alone does
-  /// not become less even.
+  /// Bent by more than a tenth, clay and air together become more even by a fifth of their variance, also in planes
+  /// that the curve was not fitted in and there by more than its error, and air alone does not become less even.
   bool significant() const noexcept;
 };
 
@@ -46,8 +59,9 @@ struct CurveSearch {
 /// volumes of some hundred voxels a side; cost: about 7 projections of 32 planes an axis. `margin`: distance of what
 /// counts as clay and as air from the other, in voxels. Where that leaves much, scatter is taken for a field over the
 /// detector (ScatterField), whose spread and absorption are searched for about the axis that leaves least, or as they
-/// are `known`, in voxels of the volume. Nothing is found where there is too little of either. Errors: kCancelled.
+/// are `known`, in voxels of the volume. Nothing is found where there is too little of either, or no more than noise
+/// makes uneven. Errors: kCancelled.
 Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margin, std::optional<TurnAxis> only,
-                                 std::shared_ptr<const ScatterField> known, Progress& progress);
+                                 const std::shared_ptr<const ScatterField>& known, Progress& progress);
 
 }  // namespace dubsar

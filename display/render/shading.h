@@ -54,7 +54,7 @@ struct Hatch {
   }
   bool operator==(const Hatch&) const = default;
 };
-inline constexpr Hatch kSepiaHatch{{200, 170, 130}, {108, 74, 44}}, kBlueHatch{{122, 158, 204}, {38, 70, 128}};
+inline constexpr Hatch kSepiaHatch{{200, 166, 120}, {104, 68, 36}}, kBlueHatch{{122, 158, 204}, {38, 70, 128}};
 
 /// What a surface is made of, for the eye.
 struct Style {

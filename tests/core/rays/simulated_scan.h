@@ -59,23 +59,24 @@ inline double line_integral(const std::vector<Ellipsoid>& object, double cosine,
 inline std::vector<double> stray_of_view(const std::vector<Ellipsoid>& object, Dims dims, const Scanner& scanner,
                                          double cosine, double sine, int half) {
   const int bins = 2 * half + 1, planes = static_cast<int>(dims.z);
-  std::vector<double> source(static_cast<std::size_t>(bins * planes)), across(source), out(source);
+  const auto at = [bins](int z, int u) {
+    return static_cast<std::size_t>(z) * static_cast<std::size_t>(bins) + static_cast<std::size_t>(u);
+  };
+  std::vector<double> source(static_cast<std::size_t>(bins) * static_cast<std::size_t>(planes)), across(source),
+      out(source);
   for (int z = 0; z < planes; ++z)
     for (int u = 0; u < bins; ++u) {
       const double p = scanner.absorbed *
                        line_integral(object, cosine, sine, u - half + scanner.axis_off, z - 0.5 * double(planes - 1));
-      source[static_cast<std::size_t>(z * bins + u)] = p * std::exp(-p);
+      source[at(z, u)] = p * std::exp(-p);
     }
   const auto weight = [&](int k) { return std::exp(-0.5 * k * k / (scanner.spread * scanner.spread)); };
   for (int z = 0; z < planes; ++z)
     for (int u = 0; u < bins; ++u)
-      for (int v = 0; v < bins; ++v)
-        across[static_cast<std::size_t>(z * bins + u)] +=
-            weight(u - v) * source[static_cast<std::size_t>(z * bins + v)];
+      for (int v = 0; v < bins; ++v) across[at(z, u)] += weight(u - v) * source[at(z, v)];
   for (int z = 0; z < planes; ++z)
     for (int u = 0; u < bins; ++u)
-      for (int w = 0; w < planes; ++w)
-        out[static_cast<std::size_t>(z * bins + u)] += weight(z - w) * across[static_cast<std::size_t>(w * bins + u)];
+      for (int w = 0; w < planes; ++w) out[at(z, u)] += weight(z - w) * across[at(w, u)];
   return out;
 }
 
@@ -107,7 +108,7 @@ inline Volume<float> scan(const std::vector<Ellipsoid>& object, Dims dims, const
                  3.0;
         if (scanner.recorded) sum = scanner.recorded(sum);
         if (scanner.stray > 0.0) {
-          const double stray = strays[static_cast<std::size_t>(view)][static_cast<std::size_t>(int(z) * bins + u)];
+          const double stray = strays[static_cast<std::size_t>(view)][static_cast<std::size_t>(z * bins + u)];
           sum = -std::log(std::exp(-scanner.absorbed * sum) + scanner.stray * stray / most_stray) / scanner.absorbed;
         }
         p[static_cast<std::size_t>(u)] = sum + stripes[static_cast<std::size_t>(u)] + scanner.noise * normal(random);
