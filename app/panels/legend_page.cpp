@@ -12,8 +12,8 @@ namespace dubsar::app {
 namespace {
 
 constexpr float kBarEm = 15.0f, kTall = 12.0f, kPad = 10.0f;
-constexpr float kWholeLegendAbove = 900.0f,
-                kSmallestLegend = 0.6f;  // pixels of height from which on letters are of full size
+constexpr float kWholeLegendAbove = 900.0f;  // pixels of height from which on letters are of full size
+constexpr float kSmallestLegend = 0.6f;      // of it
 
 }  // namespace
 

@@ -32,8 +32,9 @@ void draw_evidence(const PanelContext& context) {
   const Hatch& hatch = blue ? kBlueHatch : kSepiaHatch;
   const auto color = [](const Rgb8& c) { return IM_COL32(c[0], c[1], c[2], 255); };
   if (evidence) {
-    ImGui::SameLine();
-    button(context, tr_name("hatch", "blue"), blue ? "hatch sepia" : "hatch blue", blue);
+    const std::string label = tr_name("hatch", "blue");
+    next_in_row(button_width(label));
+    button(context, label, blue ? "hatch sepia" : "hatch blue", blue);
   }
   const double all = context.state.evidence.measured_mm2 + context.state.evidence.inferred_mm2;
   const ImVec2 corner = ImGui::GetCursorScreenPos();

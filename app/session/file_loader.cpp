@@ -112,11 +112,7 @@ std::optional<Result<OpenedSurface>> FileLoader::take() {
   const auto done = job_.take();
   if (!done) return std::nullopt;
   const std::shared_ptr<Reading> read = std::exchange(reading_, nullptr);
-  Result<OpenedSurface> out = tl::unexpected(Error{});
-  if (*done)
-    out = std::move(*read->surface);
-  else
-    out = tl::unexpected(done->error());
+  Result<OpenedSurface> out = done->map([&] { return std::move(*read->surface); });
   if (out) {
     shown_ = read->index;
     if (const auto kept = remember_recent(recent_, read->file); !kept) log_warning("{}", kept.error().message);

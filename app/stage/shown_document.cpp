@@ -65,11 +65,11 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
     out.other = {preset->style, preset->light, choice.share};
   const auto adapt = [&](Style& style) {
     style.mark_inferred = style.mark_inferred && choice.evidence;
+    style.hatch = stage.room.gallery ? kMutedHatch : choice.hatch == "blue" ? kBlueHatch : kSepiaHatch;
     style.contrast *= choice.strength;
     style.ambient_occlusion = style.ambient_occlusion && choice.occlusion;
     style.radiance = std::max(style.radiance, choice.radiance);
     if (choice.colours == "blue-orange") style.field_colors = FieldColors::kBlueOrange;
-    style.hatch = stage.room.gallery ? kMutedHatch : choice.hatch == "blue" ? kBlueHatch : kSepiaHatch;
     style.section = choice.section && !document.parts.empty();  // what parts are made of is closed
     if (choice.back_faces == "tint") style.back_faces = BackFaces::kTint;
     if (choice.back_faces == "hide") style.back_faces = BackFaces::kCull;

@@ -21,10 +21,6 @@ constexpr double kFindCost = 0.0012;      // what a wedge has to explain, at mos
 // misfits of .045 to .06 and breadths of 1.77 to 1.92 usual ones, of what is written .02 and .99 to 1.01 (seven
 // voxels deep), .034 and 1.76 (three); on S264's coarse mesh a breadth of 1.4.
 constexpr double kNoiseMisfit = 0.04, kNoiseBroad = 1.6;
-// Surfaces of fewer triangles are turned to the tablet's own axes first: patches, tiles and cells are laid by axes, and
-// where heads are two edges wide another attitude finds 15 or 21 of 27 (S264, 20,000 triangles). Where they are
-// fourteen it hardly matters, and looking at tablets as they lie found .987 of 315 instead of .971.
-constexpr std::size_t kFindFewTriangles = 60000;
 constexpr int kFindRounds = 3;
 constexpr int kFindVotes = 3;  // rounds in which the tablet's own directions count
 
@@ -56,7 +52,10 @@ Result<WedgesFound> find_wedges(const TriMesh& mesh, const WedgeSearch& search, 
     return fail(ErrorKind::kBadData, "wedges: a surface without triangles found, expected a tablet");
   progress.begin("wedges", 3, "step");
   const auto frame = find_tablet_frame(mesh);
-  const bool turn = frame && mesh.triangles.size() <= kFindFewTriangles;
+  // Patches, tiles and cells are laid by axes: where heads are two edges wide another attitude finds 15 or 21 of 27
+  // (S264, 20,000 triangles). Where they are fourteen it hardly matters, and looking at tablets as they lie found .987
+  // of 315 instead of .971.
+  const bool turn = frame && mesh.triangles.size() <= kCoarseTriangles;
   SurfaceLevels surface(turn ? in_tablet_frame(mesh, *frame) : mesh);
   WedgesFound out;
   if (!surface.fine().empty()) out.scale = wedge_scale(surface, search.width_mm);

@@ -8,6 +8,10 @@
 
 namespace dubsar {
 
+/// A surface of no more is coarse: as the photographed ones, whose heads are two or three edges wide. What is found
+/// then depends on how it lies.
+inline constexpr std::size_t kCoarseTriangles = 60000;
+
 class SurfaceLevels {
  public:
   /// Keeps no reference. Cost: some 50 ns a triangle.

@@ -32,7 +32,7 @@ constexpr double kScaleAsClear = 0.5;
 // Edges over a width: where there are fewer, a surface of few triangles is looked at in several attitudes. Of S264's
 // roundings .15 and .30 explain alike in one of them (2 % apart), and 55 or 61 of 81 heads are found with them.
 constexpr double kScaleCoarse = 6.0;
-constexpr std::size_t kScaleManyTriangles = 60000, kScaleTurns = 5;
+constexpr std::size_t kScaleTurns = 5;
 
 /// A surface, and turned: where heads are few edges wide, tiles and samples that lie otherwise see others of them.
 class ScaleAttitudes {
@@ -40,7 +40,7 @@ class ScaleAttitudes {
   explicit ScaleAttitudes(SurfaceLevels& own) : own_(own) {}
   std::vector<SurfaceLevels*> of_width(double width_mm) {
     std::vector<SurfaceLevels*> out{&own_};
-    if (width_mm > kScaleCoarse * own_.fine().mean_edge_mm() || own_.fine().triangles().size() > kScaleManyTriangles)
+    if (width_mm > kScaleCoarse * own_.fine().mean_edge_mm() || own_.fine().triangles().size() > kCoarseTriangles)
       return out;
     for (std::size_t k = 0; k < kScaleTurns; ++k) {
       if (turned_.size() == k) turned_.push_back(std::make_unique<SurfaceLevels>(turned(k)));

@@ -7,22 +7,13 @@
 #include <cerrno>
 #include <random>
 
+#include "core/base/files/write_all.h"
+
 namespace dubsar {
 namespace fs = std::filesystem;
 
 namespace {
 constexpr long kTemporaryBytes = 22;  // ".NAME.tmp-PID-RANDOM" with a process number of 7 digits
-
-Result<void> write_all(int descriptor, std::span<const std::byte> bytes, std::int64_t offset, const fs::path& name) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), offset);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return fail_errno(errno, fmt::format("cannot write {}", name.string()));
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-    offset += written;
-  }
-  return {};
-}
 
 /// Where a chain of links ends, also when nothing is there yet. Fails after 40 links, as the system does.
 Result<fs::path> behind_links(const fs::path& name) {

@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <span>
 #include <system_error>
+
+#include "core/base/files/write_all.h"
 
 namespace dubsar {
 namespace fs = std::filesystem;
@@ -19,16 +22,9 @@ Result<std::shared_ptr<const NamedScratch>> NamedScratch::create(std::string_vie
   const int descriptor = ::mkostemps(name.data(), static_cast<int>(suffix.size()), O_CLOEXEC);
   if (descriptor < 0) return fail_errno(errno, fmt::format("cannot create {}", name));
   std::shared_ptr<const NamedScratch> out(new NamedScratch(name));
-  int wrong = 0;
-  while (!text.empty() && wrong == 0) {
-    const ::ssize_t count = ::write(descriptor, text.data(), text.size());
-    if (count >= 0)
-      text.remove_prefix(static_cast<std::size_t>(count));
-    else if (errno != EINTR)
-      wrong = errno;
-  }
-  if (::close(descriptor) != 0 && wrong == 0) wrong = errno;
-  if (wrong != 0) return fail_errno(wrong, fmt::format("cannot write {}", name));
+  const Result<void> written = write_all(descriptor, std::as_bytes(std::span(text)), 0, name);
+  if (::close(descriptor) != 0 && written) return fail_errno(errno, fmt::format("cannot write {}", name));
+  DUBSAR_TRY(written);
   return out;
 }
 
