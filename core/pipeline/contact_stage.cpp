@@ -18,6 +18,7 @@ Result<ContactReport> traced_in_scan(SurfaceModel& model, ContactRules rules, Im
   ContactOptions options;
   options.rules = rules;
   if (imported.facts.blur) options.blur_variance = static_cast<float>(imported.facts.blur->variance);
+  options.contrast = static_cast<float>(imported.raw.estimates.m_hi - imported.raw.estimates.m_lo);
   options.halve_first = !imported.detail.resample();
   if (const auto& rays = imported.facts.rays; rays && rays->straightened)
     options.least_clay_step = static_cast<float>(kUnevenClay * rays->bent->after.clay * rays->bent->levels.contrast());

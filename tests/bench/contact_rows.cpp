@@ -143,6 +143,22 @@ std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed) {
     o.contact_share = kShare;
     o.envelope_density = 1.3;
   });
+  add("clear film", [](auto& o) {
+    o.contact = Contact::kFilm;
+    o.contact_share = kShare;
+    o.snr_db = 30.0;
+  });
+  const auto add_scanned = [&](std::string name, Contact contact, double film) {
+    add(std::move(name), [&](auto& o) {
+      o.contact = contact;
+      o.film_vox = film;
+      o.contact_share = kShare;
+      o.scanner = phantom::parse_scanner("medium,turn=half,cone=0").value();
+    });
+  };
+  add_scanned("X-ray pressed", Contact::kPressed, 0.5);
+  add_scanned("X-ray filled", Contact::kFilled, 0.5);
+  for (const double film : {0.5, 0.2}) add_scanned(fmt::format("X-ray film {}", film), Contact::kFilm, film);
   return all;
 }
 

@@ -145,7 +145,7 @@ struct PlacedFilm {
     const ContactBand band = ContactBand::make(inside, patch(), 12.0f, progress).value();
     VolumeSource source(scan);
     const BandDensity density = BandDensity::read(band, source, progress).value();
-    const Dips dips = find_dips(band, inside, density, progress).value();
+    const Dips dips = find_dips(band, inside, density, 1.0f, progress).value();
     const std::vector<ClaySide> side = ClayDivision({band, dips, {}, {}, {}}).sides(progress).value();
     std::vector<int> found;
     for (int z = 0; z < kEdge; ++z)
@@ -162,7 +162,7 @@ struct PlacedFilm {
     SilentProgress progress;
     std::vector<PatchPoint> samples = patch(), before = samples;
     VolumeSource source(scan);
-    recentre(samples, inside, source, progress, {}).value();
+    recentre(samples, inside, source, 1.0f, progress, {}).value();
     std::vector<float> ways;
     for (std::size_t i = 0; i < before.size(); ++i)
       ways.push_back(glm::dot(samples[i].position - before[i].position, before[i].normal));
