@@ -90,6 +90,7 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
     result.json["artefacts"] = {
         {"bent_rays", expected->bent_rays ? bent_rays_json(*expected->bent_rays) : json(nullptr)},
         {"rings", expected->rings ? json(describe(*expected->rings)) : json(nullptr)},
+        {"holder", expected->holder ? holder_json(*expected->holder, volume->frame().input_voxel) : json(nullptr)},
         {"seen_bend", {{"bend", expected->seen_bend.bend}, {"share", expected->seen_bend.share}}}};
   std::string& text = result.text;
   text = fmt::format("volume ({}{}{})\n", info.format, info.dataset.empty() ? "" : ", ", info.dataset);
@@ -110,6 +111,8 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
     text += fmt::format("  artefacts    {}\n",
                         rays_text({expected->bent_rays, {}, {}, expected->seen_bend}, volume->frame()));
     if (expected->bent_rays) text += fmt::format("               {}\n", kAdviceForBentRays);
+    if (expected->holder)
+      text += fmt::format("               {}\n", describe(*expected->holder, volume->frame().input_voxel));
     if (expected->rings) text += fmt::format("               {}\n", describe(*expected->rings));
   }
   text += forecast_text(expected);

@@ -155,6 +155,8 @@ std::string summary(const std::string& out, const SurfaceFacts& facts, const Pip
   text += fmt::format("\nDetail: {}; {}\n", detail.resample() ? "half of the scan's" : "that of the scan", detail.why);
   if (report.scan.rays && report.scan.rays->bent)
     text += fmt::format("\nThe scanner: {}\n{}\n", rays_text(*report.scan.rays, report.scan.frame), kAdviceForBentRays);
+  if (report.scan.holder)
+    text += fmt::format("\nThe scan: {}\n", describe(*report.scan.holder, report.scan.frame.input_voxel));
   if (report.scan.rings) text += fmt::format("\nThe scanner: {}\n", describe(*report.scan.rings));
   if (!facts.millimetres) text += "\nThe scan does not say how large its voxels are: give --voxel-size.\n";
   text += "\nNext:\n";

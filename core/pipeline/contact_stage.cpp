@@ -23,10 +23,8 @@ Result<ContactReport> traced_in_scan(SurfaceModel& model, ContactRules rules, Im
   if (const auto& rays = imported.facts.rays; rays && rays->straightened)
     options.least_clay_step = static_cast<float>(kUnevenClay * rays->bent->after.clay * rays->bent->levels.contrast());
   std::optional<HalfResolutionSource> halved;
-  if (!imported.straightened && imported.detail.resample()) halved.emplace(imported.unbent());
-  SlabSource& density = imported.straightened ? static_cast<SlabSource&>(*imported.straightened)
-                        : halved              ? static_cast<SlabSource&>(*halved)
-                                              : imported.unbent();
+  if (imported.detail.resample() && !imported.cleaned_is_half()) halved.emplace(imported.cleaned());
+  SlabSource& density = halved ? static_cast<SlabSource&>(*halved) : imported.cleaned();
   return trace_contact(model, density, options, progress);
 }
 

@@ -136,6 +136,9 @@ Result<Forecast> forecast(SlabSource& scan, const RunShape& wanted, Detail detai
     result.seen_bend = look.seen;
     HalfResolutionSource halved(scan);
     DUBSAR_ASSIGN(result.rings, look_for_rings(scan, halved, look.levels, progress));
+    DUBSAR_ASSIGN(const std::optional<FoundHolder> holder,
+                  find_holder(scan, {.voxels_a_step = 1.0, .slices = 1, .left_out = left_out}, progress));
+    if (holder) result.holder = holder->holder;
     if (result.bent_rays) plan_straightening(run, *result.bent_rays, room);
   }
   result.cost = cost_of(run);

@@ -14,6 +14,7 @@ struct Forecast {
   DetailChoice detail;
   std::optional<BentRays> bent_rays;  ///< that will be straightened; where artefacts were looked for
   std::optional<RingsLook> rings;     ///< that will be taken off
+  std::optional<Holder> holder;       ///< that the object stands in
   SeenBend seen_bend;                 ///< of rays, where none will be straightened
   RunShape run;                       ///< with the vertices, the readings and the speed that were found
   RunCost cost;                       ///< with the threads that are set (parallel.h), beside the program itself

@@ -9,6 +9,7 @@
 #include "core/base/system/log.h"
 #include "core/base/text/json_text.h"
 #include "core/exa/exa_file.h"
+#include "core/pipeline/holder_stage.h"
 #include "core/pipeline/refine_stage.h"
 #include "core/pipeline/room_check.h"
 
@@ -52,9 +53,8 @@ Result<FoundSurface> find_surface(const PipelineOptions& options, ImportedGrid& 
     half.grid.release();  // from here on the samples are enough
   } else {
     found.frame = imported.scan->frame();
-    SlabSource& scan = imported.straightened ? static_cast<SlabSource&>(*imported.straightened) : imported.unbent();
     DUBSAR_ASSIGN(RefinedSurface refined,
-                  refine(scan, half.grid, estimates.sigma,
+                  refine(imported.cleaned(), half.grid, estimates.sigma,
                          {options.denoise, imported.estimate, options.threshold, options.sample, imported.facts.blur},
                          options.import.budget, run));
     found.sampled = std::move(refined.sampled);
@@ -109,6 +109,7 @@ struct Run {
   }
 
   void close_scan() {
+    imported.holderless.reset();
     imported.straightened.reset();
     imported.ringless.reset();
     imported.scan.reset();
@@ -176,7 +177,9 @@ struct Run {
     const Budget& budget = options.import.budget;
     switch (stage) {  // clang-format off
       case RunStage::kImport: return {};  // import()
-      case RunStage::kRays: return keep(imported.facts.rays, straighten_rays(imported, plan.run, plan.room, budget, run));
+      case RunStage::kRays:
+        DUBSAR_TRY(keep(imported.facts.rays, straighten_rays(imported, plan.run, plan.room, budget, run)));
+        return take_holder_off(imported, budget, run);
       case RunStage::kDenoise:
         return keep(half, denoise(std::move(imported.grid), kHalvedGrid, options.denoise, imported.estimate, run));
       case RunStage::kSurface: return find();

@@ -110,6 +110,7 @@ json artefacts_json(const PipelineReport& report) {
                        {"strongest", rings->strongest},
                        {"alike", rings->look.alike},
                        {"text", describe(*rings)}};
+  if (report.scan.holder) result["holder"] = holder_json(*report.scan.holder, report.scan.frame.input_voxel);
   if (!rays.why_not.empty()) result["why_not"] = rays.why_not;
   if (rays.bent) result["advice"] = kAdviceForBentRays;
   return result;
@@ -225,6 +226,17 @@ json bent_rays_json(const BentRays& bent) {
           {"cut_by_border", bent.cut_by_border}};
 }
 
+json holder_json(const Holder& holder, const VoxelSize& voxel) {
+  return {{"of_clay", holder.of_clay()},
+          {"share", holder.share},
+          {"axis", std::string(1, "xyz"[holder.axis])},
+          {"at_high_end", holder.at_high_end},
+          {"reach_vox", holder.reach_vox},
+          {"at_border", holder.at_border},
+          {"counts_as_air", holder.counts_as_air()},
+          {"text", describe(holder, voxel)}};
+}
+
 json mesh_check_json(const MeshCheck& check) {
   return {{"vertices", check.vertices},
           {"triangles", check.triangles},
@@ -305,6 +317,7 @@ std::string report_text(const PipelineReport& report) {
                         blur->places);
   if (report.scan.unmeasured.left_out()) text += describe(report.scan.unmeasured) + "\n";
   if (report.scan.rings) text += describe(*report.scan.rings) + "\n";
+  if (report.scan.holder) text += describe(*report.scan.holder, report.scan.frame.input_voxel) + "\n";
   if (report.scan.rays) text += rays_text(*report.scan.rays, report.scan.frame) + "\n";
   text += fmt::format("detail {}: {}\n", name_in(kDetails, report.detail.detail), report.detail.why);
   if (const auto& band = report.detail.band)

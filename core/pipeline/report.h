@@ -90,6 +90,8 @@ nlohmann::json volume_json(const VolumeInfo& info);
 /// null where every voxel is a measurement.
 nlohmann::json unmeasured_json(const Unmeasured& unmeasured);
 nlohmann::json bent_rays_json(const BentRays& bent);
+/// `voxel`: of the scan.
+nlohmann::json holder_json(const Holder& holder, const VoxelSize& voxel);
 nlohmann::json mesh_check_json(const MeshCheck& check);
 
 }  // namespace dubsar

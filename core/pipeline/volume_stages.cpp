@@ -97,9 +97,8 @@ Result<CountedGrid> read_grid(SlabSource& scan, bool resample, GridPlace place, 
 
 Result<void> measure_blur(ImportedGrid& imported, StageRun run) {
   run.clock.start("blur", "place");
-  SlabSource& grid = imported.straightened        ? static_cast<SlabSource&>(*imported.straightened)
-                     : imported.detail.resample() ? static_cast<SlabSource&>(imported.grid.grid)
-                                                  : imported.unbent();
+  const bool halved = imported.detail.resample() && !imported.cleaned_is_half();
+  SlabSource& grid = halved ? static_cast<SlabSource&>(imported.grid.grid) : imported.cleaned();
   const Estimates& raw = imported.raw.estimates;
   DUBSAR_ASSIGN(imported.facts.blur, measure_edge_spread(grid, raw.m_lo, raw.m_hi, run.progress));
   run.clock.finish(imported.facts.blur ? imported.facts.blur->places : 0);

@@ -12,6 +12,7 @@
 #include "core/filter/denoise.h"
 #include "core/filter/edge_spread.h"
 #include "core/filter/estimate.h"
+#include "core/filter/holder_removal.h"
 #include "core/filter/levels.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
@@ -38,6 +39,7 @@ struct ScanFacts {
   Dims grid;                          ///< after resampling
   std::optional<RaysReport> rays;     ///< where artefacts were looked for
   std::optional<RingsReport> rings;   ///< that were taken off
+  std::optional<Holder> holder;       ///< that the object stands in, where it was looked for
   std::optional<EdgeSpread> blur;     ///< of that grid before any filter; nothing where it has no flat surface
 };
 
@@ -60,6 +62,14 @@ struct ImportedGrid {
 
   /// The scan at its own resolution as it is to be read: nothing of it is straightened.
   SlabSource& unbent() { return ringless ? static_cast<SlabSource&>(*ringless) : *scan; }
+
+  std::unique_ptr<HolderlessSource> holderless;  ///< what follows without its holder, where it counts as air
+  /// What the surface is found in before any filter, or what that is halved from.
+  SlabSource& cleaned() {
+    if (holderless) return *holderless;
+    return straightened ? static_cast<SlabSource&>(*straightened) : unbent();
+  }
+  bool cleaned_is_half() const { return straightened && detail.resample(); }
 };
 
 /// How the grid of import_grid() was made, as a FilterStep is named.

@@ -64,10 +64,11 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   const PipelineReport& report = result->report;
   std::vector<std::string> stages;
   for (const StageRecord& stage : report.stages) stages.push_back(stage.name);
-  EXPECT_EQ(stages, (std::vector<std::string>{"estimate_raw", "import",   "resample",  "blur",      "rays",   "rings",
-                                              "axis",         "estimate", "denoise",   "estimate",  "sample", "band",
-                                              "extract",      "mesh",     "smooth",    "curvature", "settle", "segment",
-                                              "fill_holes",   "contact",  "occlusion", "check",     "write"}));
+  EXPECT_EQ(stages,
+            (std::vector<std::string>{"estimate_raw", "import",     "resample", "blur",      "rays",      "rings",
+                                      "axis",         "holder",     "estimate", "denoise",   "estimate",  "sample",
+                                      "band",         "extract",    "mesh",     "smooth",    "curvature", "settle",
+                                      "segment",      "fill_holes", "contact",  "occlusion", "check",     "write"}));
   for (const StageRecord& stage : report.stages) {
     EXPECT_GE(stage.work, stage.name == "fill_holes" || stage.name == "blur" ? 0 : 1) << stage.name;
   }
