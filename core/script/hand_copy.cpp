@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <optional>
+#include <type_traits>
 
 #include "core/base/numbers/median.h"
 #include "core/script/copy_mask.h"
@@ -17,7 +18,7 @@ namespace {
 // mm on paper; weights of lines as hand copies have them (docs/edition.md).
 constexpr double kCopyMargin = 8.0, kCopyBetween = 6.0, kCopyTitle = 8.0, kCopyFoot = 16.0;
 constexpr double kCopyOutline = 0.18, kCopyStroke = 0.13, kCopyHatch = 0.08, kCopyHatchSpacing = 0.8;
-constexpr double kCopyRuling = 0.1;  // thinner than wedges
+constexpr double kCopyMark = 0.1;  // rulings, cracks, seals: thinner than wedges
 constexpr double kCopyCell = 0.1, kCopyTolerance = 0.07;
 constexpr double kCopyLeastHead = 0.3;
 constexpr double kCopyDepthStroke = 0.1, kCopyDepthMore = 0.25, kCopyMostStroke = 0.5;
@@ -158,19 +159,24 @@ void draw_ground(const std::vector<glm::dvec3>& points, const TriMesh& mesh, con
       inferred.paths.push_back(path_of("hatch", on_paper(line), kCopyHatch));
 }
 
-/// One group a ruling.
-void draw_rulings(const std::vector<ScriptRuling>& rulings, const SideDrawing& side, CopyLayer& layer) {
-  for (const ScriptRuling& ruling : rulings) {
-    if (ruling.side != side.side) continue;
+/// What is found of a kind of marks on a side: one group each, a line or an outline.
+template <class Mark>
+CopyLayer marks_layer(const std::vector<Mark>& marks, const SideDrawing& side, const std::string& kind,
+                      std::vector<glm::dvec3> Mark::*places, double Mark::*size, const char* size_name) {
+  const std::string name(name_in(kTextSides, side.side));
+  CopyLayer layer{name + "-" + kind + "s", name + " " + kind + "s", name + " " + kind + "s", {}, {}, {}};
+  for (const Mark& mark : marks) {
+    if (mark.side != side.side) continue;
     CopyGroup group;
     group.id = fmt::format("{}-{}", layer.id, layer.groups.size() + 1);
-    group.classes = "ruling machine";
-    group.data = {{"depth", fmt::format("{:.3f}", ruling.depth_mm)}};
+    group.classes = kind + " machine";
+    group.data = {{size_name, fmt::format("{:.3f}", mark.*size)}};
     std::vector<glm::dvec2> line;
-    for (const glm::dvec3& p : ruling.line_mm) line.push_back(side.paper(p));
-    group.paths.push_back(path_of("ruling", line, kCopyRuling));
+    for (const glm::dvec3& p : mark.*places) line.push_back(side.paper(p));
+    group.paths.push_back(path_of(kind, line, kCopyMark, std::is_same_v<Mark, ScriptSealing>));
     layer.groups.push_back(std::move(group));
   }
+  return layer;
 }
 
 void number_lines_of(const SideDrawing& side, const std::vector<ScriptWedge>& wedges, CopyLayer& numbers) {
@@ -275,9 +281,12 @@ Result<CopySheet> hand_copy(const TriMesh& mesh, const WedgesFound& found, const
     any_inferred = any_inferred || !inferred.paths.empty();
     sheet.layers.push_back(std::move(outline));
     if (!inferred.paths.empty()) sheet.layers.push_back(std::move(inferred));
-    CopyLayer ruled{name + "-rulings", name + " rulings", name + " rulings", {}, {}, {}};
-    draw_rulings(options.rulings, side, ruled);
-    if (!ruled.groups.empty()) sheet.layers.push_back(std::move(ruled));
+    const ScriptMarks& marks = options.marks;
+    for (CopyLayer& layer : std::array{
+             marks_layer(marks.sealings, side, "seal", &ScriptSealing::outline_mm, &ScriptSealing::relief_mm, "relief"),
+             marks_layer(marks.cracks, side, "crack", &ScriptCrack::line_mm, &ScriptCrack::width_mm, "width"),
+             marks_layer(marks.rulings, side, "ruling", &ScriptRuling::line_mm, &ScriptRuling::depth_mm, "depth")})
+      if (!layer.groups.empty()) sheet.layers.push_back(std::move(layer));
     for (std::size_t k = 0; k < kWedgeKindCount; ++k) {
       const std::string kind(name_in(kWedgeKinds, static_cast<WedgeKind>(k)));
       CopyLayer layer{name + "-" + kind, name + " " + kind, name + " " + kind, {}, {}, {}};

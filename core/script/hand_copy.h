@@ -8,7 +8,7 @@
 #include "core/mesh/tri_mesh.h"
 #include "core/script/copy_sheet.h"
 #include "core/script/find_wedges.h"
-#include "core/script/rulings/find_rulings.h"
+#include "core/script/marks/script_marks.h"
 
 namespace dubsar {
 
@@ -28,7 +28,7 @@ struct HandCopyOptions {
   bool whole_plate = true;             ///< all sides on one sheet, edges beside the sides that they join
   TextSide side = TextSide::kObverse;  ///< else this one alone
   bool line_numbers = true;
-  std::vector<ScriptRuling> rulings;  ///< in a layer of their own on each side
+  ScriptMarks marks;  ///< each kind in a layer of its own on each side
 };
 
 /// Directions of a side as it is drawn: seen along its normal, edges with the obverse's right or up.
@@ -39,7 +39,7 @@ CopyView copy_view(const TabletFrame& frame, TextSide side);
 
 /// Orthographic: a mm on the clay that faces the reader is a mm on paper. Outlines are the tablet's silhouettes;
 /// inferred surface is hatched crosswise, with a legend; kinds of
-/// wedges, rulings, what is inferred, outlines and numbers have a layer each on each side; a ruler of whole cm below.
+/// wedges, rulings, cracks, seals, what is inferred, outlines and numbers have a layer each on each side; a ruler of whole cm below.
 /// kBadData: no triangles.
 Result<CopySheet> hand_copy(const TriMesh& mesh, const WedgesFound& found, const HandCopyOptions& options);
 

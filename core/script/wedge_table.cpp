@@ -32,7 +32,7 @@ std::string wedges_csv(std::span<const ScriptWedge> wedges) {
   return sealed_text(std::move(out));
 }
 
-std::string wedges_json(const WedgesFound& found, const std::string& made_by, std::span<const ScriptRuling> rulings) {
+std::string wedges_json(const WedgesFound& found, const std::string& made_by, const ScriptMarks& marks) {
   const auto rounded = [](double v, double digits) { return std::round(v * digits) / digits; };
   const auto point = [&](const glm::dvec3& p) {
     return nlohmann::json::array({rounded(p.x, 1e4), rounded(p.y, 1e4), rounded(p.z, 1e4)});
@@ -66,15 +66,19 @@ std::string wedges_json(const WedgesFound& found, const std::string& made_by, st
                              {"confidence", rounded(w.confidence, 1e3)},
                              {"evidence", name_in(kEvidences, w.evidence)},
                              {"by", name_in(kWedgeBys, w.by)}});
-  out["rulings"] = nlohmann::ordered_json::array();
-  for (const ScriptRuling& ruling : rulings) {
+  const auto add = [&](const char* list, TextSide side, const char* size, double mm, const char* line,
+                       std::span<const glm::dvec3> points) {
     nlohmann::ordered_json places = nlohmann::ordered_json::array();
-    for (const glm::dvec3& p : ruling.line_mm) places.emplace_back(nlohmann::ordered_json(point(p)));
-    out["rulings"].push_back({{"side", name_in(kTextSides, ruling.side)},
-                              {"depth_mm", rounded(ruling.depth_mm, 1e4)},
-                              {"line", std::move(places)},
-                              {"by", name_in(kWedgeBys, WedgeBy::kMachine)}});
-  }
+    for (const glm::dvec3& p : points) places.emplace_back(nlohmann::ordered_json(point(p)));
+    out[list].push_back({{"side", name_in(kTextSides, side)},
+                         {size, rounded(mm, 1e4)},
+                         {line, std::move(places)},
+                         {"by", name_in(kWedgeBys, WedgeBy::kMachine)}});
+  };
+  for (const char* list : {"rulings", "cracks", "seals"}) out[list] = nlohmann::ordered_json::array();
+  for (const ScriptRuling& m : marks.rulings) add("rulings", m.side, "depth_mm", m.depth_mm, "line", m.line_mm);
+  for (const ScriptCrack& m : marks.cracks) add("cracks", m.side, "width_mm", m.width_mm, "line", m.line_mm);
+  for (const ScriptSealing& m : marks.sealings) add("seals", m.side, "relief_mm", m.relief_mm, "outline", m.outline_mm);
   return sealed_text(out.dump(1) + "\n");
 }
 

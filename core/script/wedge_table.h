@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/script/find_wedges.h"
-#include "core/script/rulings/find_rulings.h"
+#include "core/script/marks/script_marks.h"
 
 namespace dubsar {
 
@@ -18,9 +18,9 @@ inline constexpr const char* kWedgeColumns =
 /// frame of the scan. The last column, empty in all rows, has the seal of the text as its name (sealed_text.h), so that
 /// a table that somebody corrected is told from ours. `by` says whose each wedge is (kWedgeBys).
 std::string wedges_csv(std::span<const ScriptWedge> wedges);
-/// The same fields as objects under "wedges", with what is usual and how the tablet lies; rulings as places on
-/// the surface. `made_by`: program, version.
+/// The same fields as objects under "wedges", with what is usual and how the tablet lies; rulings, cracks and
+/// seals (outlines) as places on the surface. `made_by`: program, version.
 std::string wedges_json(const WedgesFound& found, const std::string& made_by,
-                        std::span<const ScriptRuling> rulings = {});
+                        const ScriptMarks& marks = {});
 
 }  // namespace dubsar

@@ -15,6 +15,8 @@
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/pipeline.h"
 #include "core/script/find_wedges.h"
+#include "core/script/marks/script_marks.h"
+#include "tests/core/script/mark_score.h"
 #include "tests/core/script/wedge_causes.h"
 #include "tests/core/script/wedge_score.h"
 
@@ -25,21 +27,22 @@ constexpr std::string_view kHelp =
     "script_bench [--size XxYxZ] [--seed N] [--seeds COUNT] [--depth VOXELS] [--unwritten] [--unruled] [--pushed "
     "SHARE] [--envelope] [--scanner WORDS] "
     "[--keep DIR]\n"
-    "             [--each] [--causes] [--subdivide TIMES]\n"
+    "             [--each] [--causes] [--marks] [--subdivide TIMES]\n"
     "  --depth     of a usual wedge (7)\n"
     "  --scanner   as an X-ray scanner shows it: words as phantom --scanner takes\n"
     "  --envelope  judges the envelope's outside instead of the tablet\n"
     "  --keep      surfaces are kept in this folder, and taken from there the next time\n"
     "  --subdivide each triangle becomes four, so many times: how cost grows with triangles alone\n"
     "  --each      says of each wedge drawn what was pressed there, and what was missed\n"
-    "  --causes    counts what was missed and what was drawn falsely, by place and by cause\n";
+    "  --causes    counts what was missed and what was drawn falsely, by place and by cause\n"
+    "  --marks     judges cracks and sealings, too\n";
 
 struct ScriptArguments {
   Dims dims{320, 192, 304};
   std::uint64_t seed = 1;
   int seeds = 1, subdivide = 0;
   double depth = 7.0, pushed = 0.0;
-  bool unwritten = false, unruled = false, envelope = false, each = false, causes = false;
+  bool unwritten = false, unruled = false, envelope = false, each = false, causes = false, marks = false;
   std::string keep, scanner;
 };
 
@@ -63,6 +66,8 @@ ScriptArguments parse_script(int argc, char** argv) {
       a.envelope = true;
     } else if (word == "--causes") {
       a.causes = true;
+    } else if (word == "--marks") {
+      a.marks = true;
     } else if (word == "--each") {
       a.each = true;
     } else if (i + 1 == argc) {
@@ -179,6 +184,7 @@ int run_script(int argc, char** argv) {
   SilentProgress progress;
   WedgeScore all;
   WedgeCauses causes;
+  MarkScore marks;
   for (int k = 0; k < a.seeds; ++k) {
     phantom::PhantomOptions options;
     options.dims = a.dims;
@@ -210,6 +216,13 @@ int run_script(int argc, char** argv) {
     for (const auto& [clear, right] : score.pair_clear)
       if (a.each) fmt::print("pair {:.4f} {}\n", clear, right);
     if (a.each) print_each(*truth, found, score);
+    if (a.marks) {
+      const ScriptMarks seen = find_marks(mesh, found.sides, found.wedges);
+      const phantom::Owner owner = a.envelope ? phantom::Owner::kEnvelope : phantom::Owner::kTablet;
+      const MarkScore of = judge_marks(*truth, mesh, found.sides, owner, seen.cracks, seen.sealings);
+      fmt::print("seed {} {}{}\n", options.seed, truth->cracked() ? "(cracked) " : "", of.text());
+      marks.add(of);
+    }
     if (a.causes) {
       const WedgesFound every = script_value(find_wedges(mesh, {.least_confidence = 0.0}, progress));
       causes.add(*truth, mesh, found, every, score);
@@ -218,6 +231,7 @@ int run_script(int argc, char** argv) {
     all.add(score);
   }
   if (a.seeds > 1) fmt::print("all: {}\n", all.text());
+  if (a.marks && a.seeds > 1) fmt::print("all: {}\n", marks.text());
   if (a.causes) fmt::print("{}", causes.text());
   return 0;
 }

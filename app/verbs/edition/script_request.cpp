@@ -86,7 +86,7 @@ Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progre
     out.found.sides = TextSides(frame);
     out.found.wedges = std::move(kept);
   }
-  out.rulings = find_rulings(out.mesh, out.found.sides, out.found.wedges);
+  out.marks = find_marks(out.mesh, out.found.sides, out.found.wedges);
   return out;
 }
 

@@ -7,7 +7,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "core/script/find_wedges.h"
-#include "core/script/rulings/find_rulings.h"
+#include "core/script/marks/script_marks.h"
 
 namespace dubsar::app {
 
@@ -28,12 +28,12 @@ Result<void> expect_units(const TriMesh& mesh, const std::string& in);
 /// "82 wedges, kept in a session: 80 found by the program, 2 by people"; empty where they were found now.
 std::string kept_words(const std::vector<ScriptWedge>& wedges);
 
-/// The surface of a request, its rulings, and its wedges: those that a session kept of the part, else found. Errors:
+/// The surface of a request, its marks (rulings, cracks, seals), and its wedges: those that a session kept of the part, else found. Errors:
 /// those of reading, and kUsage where an EXA file has no voxel size.
 struct ScriptSurface {
   TriMesh mesh;
   WedgesFound found;
-  std::vector<ScriptRuling> rulings;
+  ScriptMarks marks;
   bool kept = false;  ///< the wedges are those of a session
 };
 Result<ScriptSurface> read_script(const ScriptRequest& request, Progress& progress);

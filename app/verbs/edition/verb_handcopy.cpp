@@ -81,7 +81,7 @@ Result<VerbResult> run_handcopy(const HandCopyRequest& request, Progress& progre
     if (copy.title.empty()) copy.title = name_of(text.record);
   }
   DUBSAR_ASSIGN(const ScriptSurface surface, read_script(request.script, progress));
-  copy.rulings = surface.rulings;
+  copy.marks = surface.marks;
   DUBSAR_ASSIGN(CopySheet sheet, hand_copy(surface.mesh, surface.found, copy));
   const std::vector<TextSide> differ = add_text(sheet, text.lines);
   DUBSAR_TRY(write_file_atomically(out, suffix == ".svg"   ? svg_of(sheet)
@@ -98,7 +98,9 @@ Result<VerbResult> run_handcopy(const HandCopyRequest& request, Progress& progre
   if (!surface.found.sides.frame().sure()) result.text += surface.found.sides.frame().doubt() + "\n";
   result.json = {{"output", out},
                  {"wedges", surface.found.wedges.size()},
-                 {"rulings", surface.rulings.size()},
+                 {"rulings", surface.marks.rulings.size()},
+                 {"cracks", surface.marks.cracks.size()},
+                 {"seals", surface.marks.sealings.size()},
                  {"kept", surface.kept},
                  {"width_mm", sheet.width_mm},
                  {"height_mm", sheet.height_mm},

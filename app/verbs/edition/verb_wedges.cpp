@@ -23,19 +23,24 @@ Result<VerbResult> run_wedges(const ScriptRequest& request, Progress& progress) 
   const WedgesFound& found = surface.found;
   DUBSAR_TRY(write_file_atomically(request.out, suffix == ".csv"
                                                     ? wedges_csv(found.wedges)
-                                                    : wedges_json(found, "dubsar " DUBSAR_VERSION, surface.rulings)));
+                                                    : wedges_json(found, "dubsar " DUBSAR_VERSION, surface.marks)));
   VerbResult result;
   std::array<int, kWedgeKindCount> kinds{};
   for (const ScriptWedge& w : found.wedges) ++kinds[static_cast<std::size_t>(w.kind)];
   result.text = fmt::format("{}: {} wedges, heads usually {:.2f} mm wide\n", request.out, found.wedges.size(),
                             found.scale.width_mm);
   if (surface.kept) result.text += kept_words(found.wedges);
-  if (!surface.rulings.empty()) result.text += fmt::format("{} rulings\n", surface.rulings.size());
   result.json = {{"output", request.out},
                  {"wedges", found.wedges.size()},
                  {"usual_width_mm", found.scale.width_mm},
-                 {"rulings", surface.rulings.size()},
                  {"kept", surface.kept}};
+  const ScriptMarks& marks = surface.marks;
+  for (const auto& [name, count] :
+       {std::pair("rulings", marks.rulings.size()), std::pair("cracks", marks.cracks.size()),
+        std::pair("seals", marks.sealings.size())}) {
+    if (count > 0) result.text += fmt::format("{} {}\n", count, name);
+    result.json[name] = count;
+  }
   for (std::size_t k = 0; k < kWedgeKindCount; ++k) {
     const auto name = name_in(kWedgeKinds, static_cast<WedgeKind>(k));
     result.json["kinds"][std::string(name)] = kinds[k];
