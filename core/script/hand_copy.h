@@ -39,8 +39,8 @@ CopyView copy_view(const TabletFrame& frame, TextSide side);
 
 /// Orthographic: a mm on the clay that faces the reader is a mm on paper. Outlines are the tablet's silhouettes;
 /// inferred surface is hatched crosswise, with a legend; kinds of
-/// wedges, rulings, cracks, seals, what is inferred, outlines and numbers have a layer each on each side; a ruler of whole cm below.
-/// kBadData: no triangles.
+/// wedges, rulings, cracks, seals, what is inferred, outlines and numbers have a layer each on each side; a ruler of
+/// whole cm below. kBadData: no triangles.
 Result<CopySheet> hand_copy(const TriMesh& mesh, const WedgesFound& found, const HandCopyOptions& options);
 
 }  // namespace dubsar

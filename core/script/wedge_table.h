@@ -20,7 +20,6 @@ inline constexpr const char* kWedgeColumns =
 std::string wedges_csv(std::span<const ScriptWedge> wedges);
 /// The same fields as objects under "wedges", with what is usual and how the tablet lies; rulings, cracks and
 /// seals (outlines) as places on the surface. `made_by`: program, version.
-std::string wedges_json(const WedgesFound& found, const std::string& made_by,
-                        const ScriptMarks& marks = {});
+std::string wedges_json(const WedgesFound& found, const std::string& made_by, const ScriptMarks& marks = {});
 
 }  // namespace dubsar

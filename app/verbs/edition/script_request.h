@@ -28,8 +28,8 @@ Result<void> expect_units(const TriMesh& mesh, const std::string& in);
 /// "82 wedges, kept in a session: 80 found by the program, 2 by people"; empty where they were found now.
 std::string kept_words(const std::vector<ScriptWedge>& wedges);
 
-/// The surface of a request, its marks (rulings, cracks, seals), and its wedges: those that a session kept of the part, else found. Errors:
-/// those of reading, and kUsage where an EXA file has no voxel size.
+/// The surface of a request, its marks (rulings, cracks, seals), and its wedges: those that a session kept of the part,
+/// else found. Errors: those of reading, and kUsage where an EXA file has no voxel size.
 struct ScriptSurface {
   TriMesh mesh;
   WedgesFound found;
