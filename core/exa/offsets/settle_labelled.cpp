@@ -20,15 +20,12 @@ constexpr std::int64_t kPlaceGrain = 1 << 14;
 /// Where the samples alone have the vertices of `labelled`.
 Result<std::vector<glm::vec3>> places_of_samples(const SurfaceModel& model, const LabelledMesh& labelled,
                                                  Progress& progress) {
-  const PointLabels labels(model.samples.signs, model.labelled->envelope);
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
-  DUBSAR_ASSIGN(const ContactQuads contact,
-                build_contact_quads(model.samples, index, labels, ContactEdges(labels), model.labelled->contact));
   DUBSAR_ASSIGN(const QuadMesh unlabelled, build_quad_mesh(model.samples, index, progress));
-  const std::vector<glm::vec3>& mixed = contact.mesh.positions;
+  const std::vector<glm::vec3>& mixed = labelled.extracted;
   if (labelled.first_mixed + mixed.size() != labelled.mesh.positions.size())
-    return fail(ErrorKind::kInternal, "exa: the labelled mesh of {} vertices is not the one of the samples ({})",
-                labelled.mesh.positions.size(), labelled.first_mixed + mixed.size());
+    return fail(ErrorKind::kInternal, "exa: places of {} vertices of the labelled mesh found, {} expected",
+                labelled.first_mixed + mixed.size(), labelled.mesh.positions.size());
   std::vector<glm::vec3> places(labelled.first_mixed);
   for (std::uint32_t v = 0; v < labelled.first_mixed; ++v) places[v] = unlabelled.positions[labelled.unlabelled[v]];
   places.insert(places.end(), mixed.begin(), mixed.end());

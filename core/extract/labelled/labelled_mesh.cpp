@@ -315,7 +315,8 @@ Result<LabelledMesh> put_labels(QuadMesh unlabelled, ContactQuads contact, const
 
   mesh.positions.resize(result.first_mixed);
   mesh.positions.reserve(result.first_mixed + own);  // no more than that
-  mesh.positions.insert(mesh.positions.end(), contact.mesh.positions.begin(), contact.mesh.positions.end());
+  result.extracted = std::move(contact.mesh.positions);
+  mesh.positions.insert(mesh.positions.end(), result.extracted.begin(), result.extracted.end());
   parallel_for(result.first_contact, 1 << 14, [&](std::int64_t q) {
     for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = new_number[v];
   });

@@ -41,6 +41,7 @@ struct LabelledMesh {
   std::vector<MixedCell> cells;      ///< order z, y, x
   std::vector<std::uint8_t> triple;  ///< of each vertex from first_mixed on: 1 where three labels meet at it
   std::vector<std::uint8_t> at_air;  ///< of each vertex from first_mixed on: 1 if it has an x-quad at the air
+  std::vector<glm::vec3> extracted;  ///< of each vertex from first_mixed on: where the samples have it
   /// Of each vertex: that of the mesh without labels in its place, which has some of its crossings; kNoVertex: none.
   std::vector<std::uint32_t> unlabelled;
 
