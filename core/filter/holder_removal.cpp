@@ -14,7 +14,7 @@ constexpr int kMostlyOf27 = 14;
 constexpr int kGrown = 2;          ///< cells, beyond those
 constexpr std::int64_t kNear = 2;  ///< voxels: of the Gauss, and of what lies beside a voxel
 constexpr std::uint8_t kAirBeside = 1, kClayBeside = 2;
-constexpr std::array<float, 5> kGauss{1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};  ///< variance 1
+constexpr std::array<float, 5> kBinomial{1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};  ///< variance 1
 
 /// Cells of which `count` of the 27 around are set.
 std::vector<std::uint8_t> with_neighbours(const std::vector<std::uint8_t>& set, const Dims& d, int count) {
@@ -137,14 +137,15 @@ Result<void> HolderlessSource::read(std::int64_t z_begin, std::int64_t z_end, st
       for (std::int64_t b = -kNear; b <= kNear; ++b) {
         const std::int64_t j = std::clamp<std::int64_t>(y + b, 0, d.y - 1),
                            k = std::clamp<std::int64_t>(z + c, 0, d.z - 1);
-        const float weight = kGauss[static_cast<std::size_t>(b + kNear)] * kGauss[static_cast<std::size_t>(c + kNear)];
+        const float weight =
+            kBinomial[static_cast<std::size_t>(b + kNear)] * kBinomial[static_cast<std::size_t>(c + kNear)];
         const float* const row = slab.data() + ((k - z0) * d.y + j) * d.x;
         for (std::size_t x = 0; x < width; ++x) across[x] += weight * row[x];
       }
     for (std::int64_t x = 0; x < d.x; ++x) {
       float sum = 0.0f;
       for (std::int64_t a = -kNear; a <= kNear; ++a)
-        sum += kGauss[static_cast<std::size_t>(a + kNear)] *
+        sum += kBinomial[static_cast<std::size_t>(a + kNear)] *
                across[static_cast<std::size_t>(std::clamp<std::int64_t>(x + a, 0, d.x - 1))];
       smooth[item * d.x + x] = sum;
       const std::uint8_t kind = sum < is_air ? kAirBeside : sum > is_clay ? kClayBeside : 0;
