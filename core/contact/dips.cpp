@@ -24,10 +24,8 @@ constexpr std::int64_t kEdge = BrickMap<float>::kEdge;
 constexpr std::array<float, kDipArms> kArms{3.0f, 2.0f, 4.0f};
 constexpr float kDisk = 3.2f, kDiskDeviation = 1.8f;
 constexpr float kLeastDipCosine = 0.45f;  ///< flanks of wedges stand up to 60 degrees from the contact
-/// Of the contrast, deviation of dips that is taken for at least: that of a scan of 17 dB. However little noise there
-/// is, reconstructions make dips of one to six hundredths of the contrast without any film, which hang together over
-/// hundreds of voxels: in the plane of a gap that ends there, along rings, beside edges.
-constexpr float kLeastNoise = 0.05f;
+/// Of the strongest dip, noise that is taken for at least: as of a scan of 8 bits.
+constexpr float kLeastNoise = 1.0f / 256.0f;
 
 /// A brick and what lies around it, as an array.
 template <class T, int kHalo>
@@ -176,7 +174,8 @@ class BrickDips {
     for (const glm::ivec3& end : d.ends)
       for (int z = kArmHalo; z < kArmHalo + static_cast<int>(kEdge); ++z) {
         const std::uint32_t rows = along[static_cast<std::size_t>(z)];
-        asked[static_cast<std::size_t>(z + end.z)] |= end.y < 0 ? rows >> -end.y : rows << end.y;
+        const int there = z + end.z;
+        asked[static_cast<std::size_t>(there)] |= end.y < 0 ? rows >> -end.y : rows << end.y;
       }
     summed_.clear();
     for (int z = 0; z < Means::kSide; ++z)
@@ -333,8 +332,8 @@ void BandDensity::low_pass() {
   });
 }
 
-Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density, float contrast,
-                       Progress& progress) {
+Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density, Progress& progress,
+                       float least_deviation) {
   const std::vector<Direction> all_directions = directions();
   Dips dips;
   dips.strength.assign(band.nodes.size(), kNoDip);
@@ -353,8 +352,11 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
     if (band.nodes[i].distance > 0.8f * band.reach_at(band.nodes[i].height) && dips.strength[i] > kNoDip)
       quiet.push_back(dips.strength[i]);
   const float level = median(quiet);
+  float most = 0.0f;
+  for (const float v : dips.strength)
+    if (v > kNoDip) most = std::max(most, std::abs(v - level));
   for (float& v : quiet) v = std::abs(v - level);
-  dips.deviation = std::max({1.4826f * median(std::move(quiet)), kLeastNoise * contrast, 1e-30f});
+  dips.deviation = std::max({1.4826f * median(std::move(quiet)), kLeastNoise * most, least_deviation, 1e-30f});
   for (float& v : dips.strength) v = v > kNoDip ? (v - level) / dips.deviation : 0.0f;
   return dips;
 }

@@ -62,9 +62,9 @@ struct Dips {
   PlainClay plain{};           ///< what chance makes of it
 };
 
-/// Disks of three grid steps across 49 directions, beside others two to four steps away. `contrast`: of clay with air,
-/// grey values; the noise is at least a twentieth of it. About 1.5 us a node and thread with AVX-512. kCancelled.
-Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density, float contrast,
-                       Progress& progress);
+/// Disks of three grid steps across 49 directions, beside others two to four steps away. `least_deviation`: that noise
+/// in `strength` is taken for at least, density. About 1.5 us a node and thread with AVX-512. kCancelled.
+Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density, Progress& progress,
+                       float least_deviation = 0.0f);
 
 }  // namespace dubsar

@@ -228,10 +228,10 @@ constexpr BandDensity::Room kKeptRoom{2, 3}, kKeptRoomAtHalf{1, 3};
 /// The way of each sample along its normal, grid steps. `values`: what is kept of `density` between looks.
 Result<std::vector<float>> ways_to_films(const std::vector<PatchPoint>& samples, const BitVolume& inside,
                                          SlabSource& density, BandDensity& values, BandDensity::Room kept,
-                                         float contrast, Progress& progress) {
+                                         Progress& progress) {
   DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, thinned(samples, kThinned), kReach, progress));
   DUBSAR_TRY(values.follow(band, density, progress, kept));
-  DUBSAR_ASSIGN(const Dips dips, find_dips(band, inside, values, contrast, progress));
+  DUBSAR_ASSIGN(const Dips dips, find_dips(band, inside, values, progress));
   DUBSAR_ASSIGN(const std::vector<ClaySide> side, ClayDivision({band, dips, {}, {}, {}}).sides(progress));
   const HeightField heights(samples, grounds_of(band, inside, dips, side));
   std::vector<float> ways(samples.size());
@@ -282,24 +282,23 @@ Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, Co
 }  // namespace
 
 Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                                   float contrast, Progress& progress, ContactRules rules) {
+                                   Progress& progress, ContactRules rules) {
   BandDensity values;
   DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 1.0f, rules, [&](const std::vector<PatchPoint>& from) {
-                  return ways_to_films(from, inside, density, values, kKeptRoom, contrast, progress);
+                  return ways_to_films(from, inside, density, values, kKeptRoom, progress);
                 }));
   recentred.density = std::move(values);
   return recentred;
 }
 
 Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
-                                           SlabSource& density, float contrast, Progress& progress,
-                                           ContactRules rules) {
+                                           SlabSource& density, Progress& progress, ContactRules rules) {
   HalfResolutionSource half(density);
   const BitVolume inside_half = halved_signs(inside, half.dims());
   BandDensity values;
   return follow_films(samples, 2.0f, rules, [&](std::vector<PatchPoint> from) {
     for (PatchPoint& sample : from) sample.position = halved(sample.position);
-    return ways_to_films(from, inside_half, half, values, kKeptRoomAtHalf, contrast, progress);
+    return ways_to_films(from, inside_half, half, values, kKeptRoomAtHalf, progress);
   });
 }
 

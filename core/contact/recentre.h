@@ -26,13 +26,12 @@ struct Recentred {
 /// corner of the tablet off may be 30 steps from it. `inside`: the signs of the grid; `density`: the scan on it,
 /// unfiltered. Deterministic for any thread count. Errors of `density`, kCancelled.
 Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                                   float contrast, Progress& progress, ContactRules rules = {});
+                                   Progress& progress, ContactRules rules = {});
 
 /// The same on a grid of half the resolution, for that of the scan: twice as far, an eighth of the points. About a
 /// third of what the contact takes afterwards, each time. What was read is kept from look to look, and freed at the
 /// end.
 Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
-                                           SlabSource& density, float contrast, Progress& progress,
-                                           ContactRules rules = {});
+                                           SlabSource& density, Progress& progress, ContactRules rules = {});
 
 }  // namespace dubsar

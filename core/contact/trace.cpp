@@ -111,8 +111,7 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   }
   progress.begin("contact", 0, "step");
   const auto recentre = options.halve_first ? recentre_samples_at_half : recentre_samples;
-  DUBSAR_ASSIGN(Recentred recentred,
-                recentre(samples, model.samples.signs, density, options.contrast, progress, options.rules));
+  DUBSAR_ASSIGN(Recentred recentred, recentre(samples, model.samples.signs, density, progress, options.rules));
   log_debug("contact: looked for up to {:.1f} steps from the smooth patch", recentred.longest);
   DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   DUBSAR_ASSIGN(BandDensity values, density_of(band, std::move(recentred.density), density, progress));
@@ -121,7 +120,7 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   if (!clays) band.trim_envelope(options.out_reach);
   report.points = static_cast<std::int64_t>(band.nodes.size());
   DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band, progress));
-  DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, options.contrast, progress));
+  DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress, options.least_deviation));
   values.drop_raw();
   report.clays_differ = clays.has_value();
   std::vector<float> votes;

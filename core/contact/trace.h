@@ -26,7 +26,9 @@ struct ContactOptions {
   float film_margin = 0.3f;
   /// Variance of the scan's edges, voxels squared (core/filter/edge_spread.h); this is that of a good scan.
   float blur_variance = 0.42f;
-  float contrast = 1.0f;  ///< of clay with air, grey values
+  /// Deviation of dips that is taken for at least, grey values: however little noise there is, reconstructions make
+  /// dips that hang together.
+  float least_deviation = 0.0f;
   /// Smaller differences of the two clays, grey values, say nothing: so uneven is what should be one density where rays
   /// were straightened.
   float least_clay_step = 0.0f;

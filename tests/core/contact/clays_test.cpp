@@ -98,7 +98,7 @@ TEST(DivideClay, WithoutNoiseVotesAndCostsAreFinite) {
   ASSERT_TRUE(contrast.has_value());
   SilentProgress progress;
   const std::vector<float> votes = clay_votes(scene.band, scene.inside, scene.density, *contrast);
-  const Dips dips = find_dips(scene.band, scene.inside, scene.density, 1.0f, progress).value();
+  const Dips dips = find_dips(scene.band, scene.inside, scene.density, progress).value();
   const auto side = ClayDivision({scene.band, dips, {}, votes, {}}).sides(progress).value();
   for (std::uint32_t n = 0; n < side.size(); ++n) {
     ASSERT_LT(std::abs(votes[n]), 1e5f);
@@ -114,7 +114,7 @@ TEST(DivideClay, FollowsTheBorderOfTwoClaysAwayFromThePatch) {
   const auto contrast = compare_clays(scene.band, scene.inside, scene.density, kPointSpread);
   ASSERT_TRUE(contrast.has_value());
   SilentProgress progress;
-  const Dips dips = find_dips(scene.band, scene.inside, scene.density, 1.0f, progress).value();
+  const Dips dips = find_dips(scene.band, scene.inside, scene.density, progress).value();
   const auto wrong = [&](const std::vector<float>& votes) {
     const auto side = ClayDivision({scene.band, dips, {}, votes, {}}).sides(progress).value();
     std::int64_t count = 0;

@@ -18,14 +18,14 @@
 namespace dubsar {
 namespace {
 
-constexpr int kSheet = 40;
+constexpr int kSheet = 40, kMiddle = kSheet / 2;
 
 /// A sheet across the film of a FilmScene, uneven, whose squares are quadrilaterals divided one way or the other.
 InterfaceMesh divided_sheet(const FilmScene& scene, bool other_way) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uneven(-0.4f, 0.4f);
   InterfaceMesh mesh = sheet(kSheet, [&](int x, int y) {
-    const float u = 0.5f * static_cast<float>(x - kSheet / 2), v = 0.5f * static_cast<float>(y - kSheet / 2);
+    const float u = 0.5f * static_cast<float>(x - kMiddle), v = 0.5f * static_cast<float>(y - kMiddle);
     return scene.at(u + 0.3f * uneven(random), v + 0.3f * uneven(random), 0.6f + uneven(random));
   });
   for (std::uint32_t t = 0; t < mesh.triangles.size(); t += 2) {
@@ -145,7 +145,7 @@ struct PlacedFilm {
     const ContactBand band = ContactBand::make(inside, patch(), 12.0f, progress).value();
     VolumeSource source(scan);
     const BandDensity density = BandDensity::read(band, source, progress).value();
-    const Dips dips = find_dips(band, inside, density, 1.0f, progress).value();
+    const Dips dips = find_dips(band, inside, density, progress).value();
     const std::vector<ClaySide> side = ClayDivision({band, dips, {}, {}, {}}).sides(progress).value();
     std::vector<int> found;
     for (int z = 0; z < kEdge; ++z)
@@ -162,7 +162,7 @@ struct PlacedFilm {
     SilentProgress progress;
     std::vector<PatchPoint> samples = patch(), before = samples;
     VolumeSource source(scan);
-    recentre(samples, inside, source, 1.0f, progress, {}).value();
+    recentre(samples, inside, source, progress, {}).value();
     std::vector<float> ways;
     for (std::size_t i = 0; i < before.size(); ++i)
       ways.push_back(glm::dot(samples[i].position - before[i].position, before[i].normal));

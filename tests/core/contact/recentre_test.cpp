@@ -54,7 +54,7 @@ Moved moved(const Volume<float>& volume, decltype(recentre_samples)* recentre = 
   VolumeSource source(volume);
   SilentProgress progress;
   Moved out{0.0f, std::move(samples)};
-  out.told = recentre(out.samples, inside, source, 1.0f, progress, {}).value().longest;
+  out.told = recentre(out.samples, inside, source, progress, {}).value().longest;
   return out;
 }
 
@@ -195,12 +195,11 @@ TEST(RecentreSamples, WhatIsKeptBetweenLooksIsWhatIsReadAnewForEach) {
     std::vector<PatchPoint> kept = flat_patch();
     std::erase_if(kept, [](const PatchPoint& s) { return !amid(s); });
     std::vector<PatchPoint> anew = kept;
-    ASSERT_TRUE(recentre(kept, inside, kept_source, 1.0f, progress, {}).has_value());
+    ASSERT_TRUE(recentre(kept, inside, kept_source, progress, {}).has_value());
     int looks = 0;
     for (float longest = INFINITY; looks < 4 && longest > (half ? 12.0f : 6.0f); ++looks)
-      longest = recentre(anew, inside, anew_source, 1.0f, progress, ContactRules().without(ContactRule::kLooks))
-                    .value()
-                    .longest;
+      longest =
+          recentre(anew, inside, anew_source, progress, ContactRules().without(ContactRule::kLooks)).value().longest;
     ASSERT_GE(looks, 2);
     ASSERT_EQ(kept.size(), anew.size());
     for (std::size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i].position, anew[i].position) << i;
