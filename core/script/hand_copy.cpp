@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "core/base/numbers/median.h"
+#include "core/mesh/writing/measured_places.h"
 #include "core/script/copy_mask.h"
 
 namespace dubsar {
@@ -246,9 +247,7 @@ CopyView copy_view(const TabletFrame& f, TextSide side) {
 Result<CopySheet> hand_copy(const TriMesh& mesh, const WedgesFound& found, const HandCopyOptions& options) {
   if (mesh.triangles.empty())
     return fail(ErrorKind::kBadData, "hand copy: a surface without triangles found, expected a tablet");
-  std::vector<glm::dvec3> points;
-  points.reserve(mesh.positions.size());
-  for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
+  const std::vector<glm::dvec3> points = places_mm(mesh);
   std::vector<SideDrawing> sides = measured_sides(points, mesh, found.sides.frame());
   CopySheet sheet;
   sheet.title = options.title.empty() ? "hand copy" : options.title;

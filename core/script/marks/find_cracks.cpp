@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/mesh/writing/height_map.h"
+#include "core/mesh/writing/measured_places.h"
 
 namespace dubsar {
 namespace {
@@ -153,9 +154,7 @@ CrackSide crack_side(std::span<const glm::dvec3> points, std::span<const Triangl
 }  // namespace
 
 std::vector<ScriptCrack> find_cracks(const TriMesh& mesh, const TextSides& sides) {
-  std::vector<glm::dvec3> points;
-  points.reserve(mesh.positions.size());
-  for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
+  const std::vector<glm::dvec3> points = places_mm(mesh);
   std::vector<ScriptCrack> out;
   for (std::size_t s = 0; s < kTextSideCount && !mesh.triangles.empty(); ++s) {
     const auto which = static_cast<TextSide>(s);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/numbers/median.h"
+#include "core/mesh/writing/measured_places.h"
 #include "core/script/copy_mask.h"
 #include "core/script/marks/side_raster.h"
 #include "core/script/rulings/ruling_map.h"
@@ -151,12 +152,8 @@ std::vector<ScriptSealing> sealings_of(const RuledSide& side, TextSide which, do
 
 std::vector<ScriptSealing> find_sealings(const TriMesh& mesh, const TextSides& sides,
                                          std::span<const ScriptWedge> wedges) {
-  std::vector<glm::dvec3> points;
-  points.reserve(mesh.positions.size());
-  for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
-  std::vector<Triangle> triangles;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (mesh.triangle_inferred.empty() || mesh.triangle_inferred[t] == 0) triangles.push_back(mesh.triangles[t]);
+  const std::vector<glm::dvec3> points = places_mm(mesh);
+  const std::vector<Triangle> triangles = measured_triangles(mesh);
   std::vector<ScriptSealing> out;
   if (triangles.empty()) return out;
   std::vector<double> depths;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/numbers/median.h"
+#include "core/mesh/writing/measured_places.h"
 #include "core/script/rulings/ruling_map.h"
 
 namespace dubsar {
@@ -218,12 +219,8 @@ double median_edge(std::span<const glm::dvec3> points, std::span<const Triangle>
 
 std::vector<ScriptRuling> find_rulings(const TriMesh& mesh, const TextSides& sides,
                                        std::span<const ScriptWedge> wedges) {
-  std::vector<glm::dvec3> points;
-  points.reserve(mesh.positions.size());
-  for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
-  std::vector<Triangle> triangles;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (mesh.triangle_inferred.empty() || mesh.triangle_inferred[t] == 0) triangles.push_back(mesh.triangles[t]);
+  const std::vector<glm::dvec3> points = places_mm(mesh);
+  const std::vector<Triangle> triangles = measured_triangles(mesh);
   std::vector<ScriptRuling> out;
   if (triangles.empty()) return out;
   std::vector<double> widths;

@@ -10,30 +10,10 @@
 #include "core/phantom/phantom.h"
 #include "core/script/correction/wedge_edits.h"
 #include "core/script/rulings/find_rulings.h"
+#include "tests/core/script/sheet.h"
 
 namespace dubsar {
 namespace {
-
-/// A sheet of heights over x and y in mm.
-template <class Height>
-TriMesh sheet_of(double half, double step, const Height& height) {
-  TriMesh mesh;
-  mesh.frame.input_voxel.mm = glm::dvec3(1.0);
-  mesh.frame.input_voxel.provenance = "test";
-  const int n = static_cast<int>(2 * half / step);
-  for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i) {
-      const double x = -half + i * step, y = -half + j * step;
-      mesh.positions.push_back(glm::vec3(x, y, height(x, y)));
-    }
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      const auto at = [&](int u, int v) { return static_cast<std::uint32_t>(v * (n + 1) + u); };
-      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  return mesh;
-}
 
 struct Drawn {
   double from, to, up, slope, bend, depth;
