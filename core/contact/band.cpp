@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <unordered_map>
 #include <utility>
 
 #include "core/base/system/parallel.h"
@@ -52,7 +51,7 @@ std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing)
         }
     }
   }
-  return thinned(points, 0.5f * spacing);
+  return thinned(points, spacing);
 }
 
 glm::vec3 middle_of(const std::vector<PatchPoint>& samples) {
@@ -69,19 +68,23 @@ std::vector<PatchPoint> thinned(const std::vector<PatchPoint>& samples, float si
   glm::vec3 half(0.0f);
   for (const PatchPoint& sample : samples) half = glm::max(half, glm::abs(sample.position - middle));
   const glm::ivec3 first(glm::ceil(half / side));
-  std::unordered_map<std::uint64_t, std::array<std::uint64_t, 8>> taken;  // bits of 8x8x8 cubes, by which they are
-  std::array<std::uint64_t, 8>* bits = nullptr;
-  std::uint64_t last = 0;
+  const auto in_cubes = [&](std::uint32_t i) { return (samples[i].position - middle) / side; };
+  BrickMap<std::uint32_t> nearest({2 * first.x + 1, 2 * first.y + 1, 2 * first.z + 1}, ContactBand::kNone);
+  const auto nearest_of = [&](std::uint32_t i) -> std::uint32_t& {
+    const glm::ivec3 cube = first + glm::ivec3(glm::round(in_cubes(i)));
+    return nearest.at(cube.x, cube.y, cube.z);
+  };
+  const auto square_off = [&](std::uint32_t i) {
+    const glm::vec3 off = in_cubes(i) - glm::round(in_cubes(i));
+    return glm::dot(off, off);
+  };
+  constexpr float kSame = 1e-3f;  // of two as near it is not rounding that chooses
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    if (std::uint32_t& known = nearest_of(i); known == ContactBand::kNone || square_off(i) < square_off(known) - kSame)
+      known = i;
   std::vector<PatchPoint> few;
-  for (const PatchPoint& sample : samples) {
-    const glm::uvec3 at(first + glm::ivec3(glm::round((sample.position - middle) / side)));
-    const std::uint64_t key = std::uint64_t{at.z / 8} << 42 | std::uint64_t{at.y / 8} << 21 | at.x / 8;
-    if (bits == nullptr || key != last) bits = &taken[last = key];  // most lie beside the one before
-    std::uint64_t& word = (*bits)[at.z % 8];
-    const std::uint64_t bit = std::uint64_t{1} << (at.y % 8 * 8 + at.x % 8);
-    if ((word & bit) == 0) few.push_back(sample);
-    word |= bit;
-  }
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    if (nearest_of(i) == i) few.push_back(samples[i]);
   return few;
 }
 

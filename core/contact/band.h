@@ -35,10 +35,10 @@ struct PatchPoint {
 /// Is its `partition` the tablet's and its reverse the envelope's, or the other way round?
 bool is_contact_patch(const SurfaceModel& model, const FillPatch& patch);
 
-/// Points of such patches, at most `spacing` grid steps apart in a triangle, thinned() to half of it.
+/// Points of such patches, at most `spacing` grid steps apart in a triangle, thinned() to it.
 std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing);
 
-/// The first of those in each cube of that side; cubes are counted from the middle of all.
+/// Of those in each cube of that side the one nearest to its middle; cubes are counted from the middle of all.
 std::vector<PatchPoint> thinned(const std::vector<PatchPoint>& samples, float side);
 
 /// Middle of the box around all samples. Statistics over pieces of the contact count the pieces from here: they are the

@@ -14,13 +14,14 @@
 #include "core/contact/clay_sides.h"
 #include "core/contact/dips.h"
 #include "core/filter/resample.h"
+#include "core/parts/air_space.h"
 
 namespace dubsar {
 namespace {
 
 constexpr float kReach = 12.0f;    ///< on both sides of the patch, grid steps
 constexpr float kCubeSide = 8.0f;  ///< of the places whose heights are taken together: wider than a wedge
-constexpr float kThinned = 0.5f;   ///< cubes of which one sample is looked from, grid steps
+constexpr float kThinned = 1.0f;   ///< cubes of which one sample is looked from, grid steps
 constexpr std::size_t kLeastCrossings = 24;
 constexpr float kAcross = 0.6f;  ///< cosine from which on a face lies along the contact
 /// Quantiles of heights whose mean is the ground: below lie wedges, above what noise lifted.
@@ -242,37 +243,66 @@ Result<std::vector<float>> ways_to_films(const std::vector<PatchPoint>& samples,
   return ways;
 }
 
-/// Returns the longest way. Samples at a rim leave others behind, from where they were on: there the surface's parts
-/// meet, wherever the film is.
-float move_along_normals(std::vector<PatchPoint>& samples, const std::vector<float>& ways, float scale,
-                         std::vector<PatchPoint>& left_behind) {
+/// Moves some samples. Returns those that came farther than `far`. Samples at a rim leave others behind, from where
+/// they were on: there the surface's parts meet, wherever the film is.
+std::vector<std::uint32_t> move_along_normals(std::vector<PatchPoint>& samples, const std::vector<std::uint32_t>& moved,
+                                              const std::vector<float>& ways, float far,
+                                              std::vector<PatchPoint>& left_behind) {
   constexpr float kApart = 4.0f;
-  float longest = 0.0f;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const float way = scale * ways[i];
-    longest = std::max(longest, std::abs(way));
-    for (float at = 0.0f; samples[i].at_rim && at + 0.5f * kApart < std::abs(way); at += kApart)
-      left_behind.push_back(
-          {samples[i].position + std::copysign(at, way) * samples[i].normal, samples[i].normal, true});
-    samples[i].position += way * samples[i].normal;
+  std::vector<std::uint32_t> came_far;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    PatchPoint& sample = samples[moved[i]];
+    for (float at = 0.0f; sample.at_rim && at + 0.5f * kApart < std::abs(ways[i]); at += kApart)
+      left_behind.push_back({sample.position + std::copysign(at, ways[i]) * sample.normal, sample.normal, true});
+    sample.position += ways[i] * sample.normal;
+    if (std::abs(ways[i]) > far) came_far.push_back(moved[i]);
   }
-  return longest;
+  return came_far;
 }
 
-/// Looks anew from where the samples have come to while some of them came far: a corner of the tablet that a patch cuts
-/// off is farther away than can be seen from it, and its film leads there. `look`: the ways of samples on a grid of
-/// `scale` steps.
+/// Samples in cubes of that side of which one came far, or that are within three of such: nearly all whose grounds have
+/// a say in where those that came far are.
+std::vector<std::uint32_t> around(const std::vector<std::uint32_t>& far, const std::vector<PatchPoint>& samples,
+                                  float side) {
+  constexpr int kAround = 3;
+  const glm::vec3 middle = middle_of(samples);
+  glm::vec3 half(0.0f);
+  for (const PatchPoint& sample : samples) half = glm::max(half, glm::abs(sample.position - middle));
+  const glm::ivec3 middle_cube(glm::ceil(half / side));
+  const auto cube_of = [&](std::uint32_t i) {
+    return middle_cube + glm::ivec3(glm::round((samples[i].position - middle) / side));
+  };
+  BitVolume cubes({2 * middle_cube.x + 1, 2 * middle_cube.y + 1, 2 * middle_cube.z + 1});
+  for (const std::uint32_t i : far) {
+    const glm::ivec3 c = cube_of(i);
+    cubes.set(c.x, c.y, c.z, true);
+  }
+  const BitVolume near = dilate(cubes, kAround);
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    if (const glm::ivec3 c = cube_of(i); near.get(c.x, c.y, c.z)) found.push_back(i);
+  return found;
+}
+
+/// Looks anew from where samples have come to, and around them, while some come far: a corner of the tablet that a
+/// patch cuts off is farther away than can be seen from it, and its film leads there. `look`: the ways of samples on a
+/// grid of `scale` steps.
 template <class Look>
 Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, ContactRules rules, const Look& look) {
   const int most_looks = rules.has(ContactRule::kLooks) ? 4 : 1;
-  constexpr float kFar = 0.5f * kReach;
+  const float far = scale * 0.5f * kReach;
   const std::vector<PatchPoint> before = samples;
   std::vector<PatchPoint> left_behind;
-  Recentred recentred;
-  for (int k = 0; k < most_looks; ++k) {
-    DUBSAR_ASSIGN(const std::vector<float> ways, look(samples));
-    if (move_along_normals(samples, ways, scale, left_behind) <= scale * kFar) break;
+  std::vector<std::uint32_t> asked(samples.size());
+  std::iota(asked.begin(), asked.end(), 0u);
+  for (int k = 0; k < most_looks && !asked.empty(); ++k) {
+    std::vector<PatchPoint> from;
+    for (const std::uint32_t i : asked) from.push_back(samples[i]);
+    DUBSAR_ASSIGN(std::vector<float> ways, look(std::move(from)));
+    for (float& way : ways) way *= scale;
+    asked = around(move_along_normals(samples, asked, ways, far, left_behind), samples, scale * kCubeSide);
   }
+  Recentred recentred;
   for (std::size_t i = 0; i < before.size(); ++i)
     recentred.longest = std::max(recentred.longest, glm::distance(before[i].position, samples[i].position));
   samples.insert(samples.end(), left_behind.begin(), left_behind.end());

@@ -159,6 +159,14 @@ std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed) {
   add_scanned("X-ray pressed", Contact::kPressed, 0.5);
   add_scanned("X-ray filled", Contact::kFilled, 0.5);
   for (const double film : {0.5, 0.2}) add_scanned(fmt::format("X-ray film {}", film), Contact::kFilm, film);
+  constexpr double kWideShare = 0.45;
+  for (const double film : {0.5, 0.2})
+    add(fmt::format("wide film {}", film), [&](auto& o) {
+      o.contact = Contact::kFilm;
+      o.film_vox = film;
+      o.contact_share = kWideShare;
+    });
+  add("wide pressed", [](auto& o) { o.contact_share = kWideShare; });
   return all;
 }
 

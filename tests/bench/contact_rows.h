@@ -26,8 +26,8 @@ struct ContactRow {
 
 /// "text", "pressed", "pockets", "film 1.0" to "film 0.2", "filled", "unwritten", "unwritten film", "hard", "sharp",
 /// "soft" (other point spreads), "two clays" (the envelope fills the wedges and is denser), "clear film" (30 dB), and
-/// "X-ray pressed", "X-ray filled", "X-ray film 0.5" and "0.2" (of the simulated scanner): the first with `seed`, each
-/// other with one of its own.
+/// "X-ray pressed", "X-ray filled", "X-ray film 0.5" and "0.2" (of the simulated scanner), "wide film 0.5" and "0.2",
+/// "wide pressed" (nearly half of the tablet): the first with `seed`, each other with one of its own.
 std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed);
 
 /// Of the tablet's vertices that are not inferred.

@@ -41,7 +41,7 @@ constexpr std::string_view kHelp =
     "  --only    rows: text, pressed, pockets, film 1, film 0.5, film 0.35, film 0.2, filled, unwritten,\n"
     "            unwritten film, hard, sharp, soft, two clays, clear film, X-ray pressed, X-ray filled, X-ray film "
     "0.5,\n"
-    "            X-ray film 0.2\n"
+    "            X-ray film 0.2, wide film 0.5, wide film 0.2, wide pressed\n"
     "  --places  says where wedges were invented\n"
     "  --costs   time and memory of --detail half and scan instead\n"
     "  --large   time and memory at 935x499x861 and at the paper's size, 1871x999x1723 instead (most of an hour, 15 GB "
