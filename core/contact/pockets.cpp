@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
 
 #include "core/base/system/parallel_gather.h"
 #include "core/mesh/evidence.h"
+#include "core/parts/face_graph.h"
 
 namespace dubsar {
 namespace {
@@ -54,7 +56,7 @@ std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& 
       });
 }
 
-RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces) {
+RestPieces rest_pieces(const SurfaceModel& model, const std::vector<BandFace>& faces) {
   RestPieces pieces;
   for (const BandFace& face : faces) {
     if (!is_rest(model, face.quad) || pieces.face_of.count(face.quad) != 0) continue;
@@ -65,14 +67,14 @@ RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const 
       if (pieces.face_of.emplace(quad, RestPieces::Face{number, place}).second) piece.quads.push_back(quad);
     };
     add(face.quad);
-    const glm::vec3 origin = graph.centre[face.quad];
+    const glm::vec3 origin = face_node(model.mesh, face.quad).centre;
     for (std::size_t i = 0; i < piece.quads.size(); ++i) {
-      const std::uint32_t f = piece.quads[i];
-      piece.volume += static_cast<double>(glm::dot(graph.centre[f] - origin, graph.normal[f]) * graph.area[f]) / 3.0;
-      for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
-        if (graph.neighbour[s] == FaceGraph::kNone) continue;
-        piece.beside.push_back(graph.neighbour[s]);
-        add(graph.neighbour[s]);
+      const FaceNode node = face_node(model.mesh, piece.quads[i]);
+      piece.volume += static_cast<double>(glm::dot(node.centre - origin, node.normal) * node.area) / 3.0;
+      for (const std::uint32_t beside : std::span(node.neighbour).first(static_cast<std::size_t>(node.sides))) {
+        if (beside == FaceGraph::kNone) continue;
+        piece.beside.push_back(beside);
+        add(beside);
       }
       piece.first_side.push_back(static_cast<std::uint32_t>(piece.beside.size()));
     }

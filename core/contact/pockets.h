@@ -11,7 +11,6 @@
 #include "core/contact/band.h"
 #include "core/contact/clay_sides.h"
 #include "core/extract/edge_index.h"
-#include "core/parts/face_graph.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {
@@ -39,7 +38,7 @@ struct RestPieces {
 };
 
 /// Those that have faces in the band.
-RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces);
+RestPieces rest_pieces(const SurfaceModel& model, const std::vector<BandFace>& faces);
 
 /// Closed cavities that do not open to the contact: pores of the clay. The mouth of a pocket lies where the clays meet,
 /// and the patches miss that by less than the pocket is deep; a cavity that is farther from every patch than it

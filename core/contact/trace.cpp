@@ -40,14 +40,10 @@ struct SurfaceBeside {
   std::vector<ClayCavity> pores;
   ClayBeyond beyond;
 
-  static Result<SurfaceBeside> find(const SurfaceModel& model, const ContactBand& band, Progress& progress) {
+  static Result<SurfaceBeside> find(const SurfaceModel& model, const ContactBand& band) {
     DUBSAR_ASSIGN(EdgeIndex index, EdgeIndex::create(model.samples));
     std::vector<BandFace> faces = faces_of_band(model, index, band);
-    RestPieces rest;
-    {
-      DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
-      rest = rest_pieces(model, graph, faces);
-    }
+    RestPieces rest = rest_pieces(model, faces);
     std::vector<ClayCavity> pores = cavities_off_contact(rest, band, faces);
     return SurfaceBeside{std::move(index), std::move(faces), std::move(rest), std::move(pores),
                          ClayBeyond(model.samples.signs, band)};
@@ -119,7 +115,7 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   if (clays && std::abs(clays->step()) < options.least_clay_step) clays.reset();
   if (!clays) band.trim_envelope(options.out_reach);
   report.points = static_cast<std::int64_t>(band.nodes.size());
-  DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band, progress));
+  DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band));
   DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress, options.least_deviation));
   values.drop_raw();
   report.clays_differ = clays.has_value();
@@ -153,7 +149,7 @@ Result<ContactReport> follow_patches(SurfaceModel& model, Progress& progress) {
   DUBSAR_ASSIGN(const ContactBand band,
                 ContactBand::make(model.samples.signs, std::move(samples), kPatchBand, progress));
   report.points = static_cast<std::int64_t>(band.nodes.size());
-  DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band, progress));
+  DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band));
   Dips nothing;
   nothing.strength.assign(band.nodes.size(), 0.0f);
   std::vector<float> votes(band.nodes.size(), 0.0f);

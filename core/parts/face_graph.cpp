@@ -1,5 +1,6 @@
 #include "core/parts/face_graph.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 
 #include "core/base/system/parallel.h"
@@ -29,6 +30,26 @@ std::uint32_t find_face(const QuadMesh& mesh, std::uint32_t from, std::uint32_t 
 
 }  // namespace
 
+FaceNode face_node(const QuadMesh& mesh, std::uint32_t quad) {
+  const Polygon polygon = mesh.polygon(quad);
+  const auto size = static_cast<std::size_t>(polygon.size);
+  FaceNode node;
+  node.sides = polygon.size;
+  glm::vec3 centre(0.0f), vector(0.0f);
+  for (std::size_t i = 0; i < size; ++i) centre += mesh.positions[polygon.vertex[i]];
+  centre /= static_cast<float>(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::uint32_t a = polygon.vertex[i], b = polygon.vertex[(i + 1) % size];
+    vector += glm::cross(mesh.positions[a] - centre, mesh.positions[b] - centre);
+    node.neighbour[i] = find_face(mesh, b, a);
+  }
+  const float length = glm::length(vector);
+  node.centre = centre;
+  node.normal = length > 0.0f ? vector / length : glm::vec3(0.0f);
+  node.area = 0.5f * length;
+  return node;
+}
+
 Result<FaceGraph> FaceGraph::build(const QuadMesh& mesh, Progress& progress) {
   const std::size_t faces = mesh.quads.size();
   FaceGraph graph;
@@ -46,20 +67,11 @@ Result<FaceGraph> FaceGraph::build(const QuadMesh& mesh, Progress& progress) {
   parallel_chunks(static_cast<std::int64_t>(faces), kGraphGrain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     for (auto q = static_cast<std::uint32_t>(begin); q < static_cast<std::uint32_t>(end); ++q) {
-      const Polygon polygon = mesh.polygon(q);
-      const auto size = static_cast<std::size_t>(polygon.size);
-      glm::vec3 centre(0.0f), vector(0.0f);
-      for (std::size_t i = 0; i < size; ++i) centre += mesh.positions[polygon.vertex[i]];
-      centre /= static_cast<float>(size);
-      for (std::size_t i = 0; i < size; ++i) {
-        const std::uint32_t a = polygon.vertex[i], b = polygon.vertex[(i + 1) % size];
-        vector += glm::cross(mesh.positions[a] - centre, mesh.positions[b] - centre);
-        graph.neighbour[graph.first_side[q] + i] = find_face(mesh, b, a);
-      }
-      const float length = glm::length(vector);
-      graph.centre[q] = centre;
-      graph.normal[q] = length > 0.0f ? vector / length : glm::vec3(0.0f);
-      graph.area[q] = 0.5f * length;
+      const FaceNode node = face_node(mesh, q);
+      std::copy_n(node.neighbour.begin(), node.sides, graph.neighbour.begin() + graph.first_side[q]);
+      graph.centre[q] = node.centre;
+      graph.normal[q] = node.normal;
+      graph.area[q] = node.area;
     }
   });
   if (progress.cancelled()) return cancelled_error();

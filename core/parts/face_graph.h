@@ -1,6 +1,7 @@
 #pragma once
 // The x-quads as nodes of a graph: which faces lie across which side, how large they are and where they look.
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -10,6 +11,17 @@
 #include "core/extract/quad_mesh.h"
 
 namespace dubsar {
+
+/// One face of the graph.
+struct FaceNode {
+  int sides = 0;
+  std::array<std::uint32_t, 8> neighbour;  ///< across each of them, as in FaceGraph
+  glm::vec3 centre, normal;
+  float area;
+};
+
+/// What FaceGraph has of an x-quad, without the others.
+FaceNode face_node(const QuadMesh& mesh, std::uint32_t quad);
 
 struct FaceGraph {
   static constexpr std::uint32_t kNone = 0xffffffffu;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <set>
 #include <utility>
 
 #include "core/contact/clay_cavities.h"
@@ -29,10 +30,9 @@ float wedge(const glm::vec3& p, const glm::vec3& mouth) {
 struct CavityScene {
   SurfaceModel model;
   ContactBand band;
-  FaceGraph graph;
   std::vector<BandFace> faces;
 
-  explicit CavityScene(const scene::Field& air) : model(make(air)), band(around_patch()), graph(graph_of()) {
+  explicit CavityScene(const scene::Field& air) : model(make(air)), band(around_patch()) {
     const EdgeIndex index = EdgeIndex::create(model.samples).value();
     faces = faces_of_band(model, index, band);
   }
@@ -47,7 +47,7 @@ struct CavityScene {
     return heights;
   }
 
-  RestPieces rest() const { return rest_pieces(model, graph, faces); }
+  RestPieces rest() const { return rest_pieces(model, faces); }
 
  private:
   static SurfaceModel make(const scene::Field& air) {
@@ -70,13 +70,26 @@ struct CavityScene {
     SilentProgress progress;
     return ContactBand::make(model.samples.signs, std::move(samples), kReach, progress).value();
   }
-  FaceGraph graph_of() const {
-    SilentProgress progress;
-    return FaceGraph::build(model.mesh, progress).value();
-  }
 };
 
 float pore(const glm::vec3& p) { return scene::ball(p, {38.3f, 32.2f, kPlane - 7.6f}, 2.2f); }
+
+TEST(RestPieces, APoreIsOneClosedPieceOfItsVolumeWhoseFacesAreMutuallyBesideEachOther) {
+  const CavityScene scene(pore);
+  const RestPieces rest = scene.rest();
+  ASSERT_EQ(rest.all.size(), 1u);
+  const RestPiece& piece = rest.all[0];
+  EXPECT_NEAR(piece.volume, -35.0, 10.0) << "of a ball of 44.6, whose faces are chords";
+  ASSERT_EQ(piece.first_side.size(), piece.quads.size() + 1);
+  ASSERT_EQ(piece.first_side.back(), piece.beside.size());
+  std::multiset<std::pair<std::uint32_t, std::uint32_t>> across;
+  for (std::size_t i = 0; i < piece.quads.size(); ++i) {
+    EXPECT_GE(piece.first_side[i + 1] - piece.first_side[i], 4u);
+    for (std::uint32_t s = piece.first_side[i]; s < piece.first_side[i + 1]; ++s)
+      across.emplace(piece.quads[i], piece.beside[s]);
+  }
+  for (const auto& [from, to] : across) EXPECT_EQ(across.count({from, to}), across.count({to, from}));
+}
 
 TEST(CavitiesOffContact, APoreInTheClayIsOneAndAWedgeThatOpensToTheContactIsNot) {
   const CavityScene scene([](const glm::vec3& p) {
