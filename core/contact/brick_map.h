@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/system/large_pages.h"
 #include "core/volume/volume.h"
 
 namespace dubsar {
@@ -40,7 +41,10 @@ class BrickMap {
     return values_[place + inside(x, y, z)];
   }
   /// Room for so many bricks: none of those that are made then moves another.
-  void reserve(std::size_t bricks) { values_.reserve(bricks * kEdge * kEdge * kEdge); }
+  void reserve(std::size_t bricks) {
+    values_.reserve(bricks * kEdge * kEdge * kEdge);
+    ask_for_large_pages(values_.data() + values_.size(), (values_.capacity() - values_.size()) * sizeof(T));
+  }
   /// The values of a brick, along x, then y, then z, `none` at points beyond the grid; null where there is none.
   /// Coordinates as in has_brick(), or beyond the grid.
   const T* brick(std::int64_t bx, std::int64_t by, std::int64_t bz) const noexcept {

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <memory>
+#include <new>
+#include <type_traits>
 
 namespace dubsar {
 
@@ -26,12 +28,15 @@ Vector large_array(std::size_t size) {
   return items;
 }
 
-/// `size` items on large pages that nobody has written yet: for what is filled by all threads and needs no zeros.
+/// `size` items on large pages that nobody has written yet, not even what a T has from the start: for what is filled by
+/// all threads.
 template <class T>
 class LargeArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
  public:
   LargeArray() = default;
-  explicit LargeArray(std::size_t size) : items_(new T[size]), size_(size) {
+  explicit LargeArray(std::size_t size) : items_(static_cast<T*>(::operator new(size * sizeof(T)))), size_(size) {
     ask_for_large_pages(items_.get(), size * sizeof(T));
   }
   T* data() noexcept { return items_.get(); }
@@ -46,7 +51,10 @@ class LargeArray {
   const T* end() const noexcept { return items_.get() + size_; }
 
  private:
-  std::unique_ptr<T[]> items_;
+  struct Free {
+    void operator()(T* items) const noexcept { ::operator delete(items); }
+  };
+  std::unique_ptr<T[], Free> items_;
   std::size_t size_ = 0;
 };
 
