@@ -5,9 +5,11 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <span>
 #include <utility>
 
-#include "core/base/system/parallel.h"
+#include "core/base/system/large_pages.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/contact/nearest_samples.h"
 
 namespace dubsar {
@@ -124,17 +126,36 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
 
 void ContactBand::trim_envelope(float reach) {
   envelope_reach = reach;
-  std::erase_if(nodes, [&](const Node& node) { return node.distance > reach_at(node.height); });
-  nodes.shrink_to_fit();
-  const auto bricks =
-      static_cast<std::size_t>(std::ranges::count_if(nodes, [last = glm::ivec3(-1)](const Node& node) mutable {
-        const glm::ivec3 before =
-            std::exchange(last, glm::ivec3(node.x, node.y, node.z) / static_cast<int>(BrickMap<std::uint32_t>::kEdge));
-        return before != last;
-      }));
+  constexpr std::int64_t kTogether = 1 << 16;  ///< nodes of which one thread drops some
+  const auto stays = [&](const Node& node) { return node.distance <= reach_at(node.height); };
+  std::vector<std::int64_t> first((nodes.size() + kTogether - 1) / kTogether);
+  const auto each_range = [&](const auto& visit) {
+    parallel_chunks(static_cast<std::int64_t>(nodes.size()), kTogether, [&](std::int64_t begin, std::int64_t end) {
+      visit(std::span(nodes).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)),
+            first[static_cast<std::size_t>(begin / kTogether)]);
+    });
+  };
+  each_range([&](std::span<const Node> some, std::int64_t& count) { count = std::ranges::count_if(some, stays); });
+  const auto left = static_cast<std::size_t>(exclusive_scan(first));
+  auto kept = large_array<std::vector<Node>>(left);
+  each_range(
+      [&](std::span<const Node> some, std::int64_t begin) { std::ranges::copy_if(some, kept.begin() + begin, stays); });
+  nodes = std::move(kept);
+  const auto brick_of = [](const Node& node) {
+    return glm::ivec3(node.x, node.y, node.z) / static_cast<int>(BrickMap<std::uint32_t>::kEdge);
+  };
+  const std::vector<glm::ivec3> bricks = parallel_gather<glm::ivec3>(
+      static_cast<std::int64_t>(left), kTogether, [&](std::int64_t begin, std::int64_t end, auto& found) {
+        for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n)
+          if (n == 0 || brick_of(nodes[n]) != brick_of(nodes[n - 1])) found.push_back(brick_of(nodes[n]));
+      });
   node_at = BrickMap<std::uint32_t>(node_at.dims(), kNone);
-  node_at.reserve(bricks);
-  for (std::uint32_t n = 0; n < nodes.size(); ++n) node_at.at(nodes[n].x, nodes[n].y, nodes[n].z) = n;
+  node_at.reserve(bricks.size());
+  for (const glm::ivec3& brick : bricks) node_at.add_brick(brick.x, brick.y, brick.z);
+  parallel_for(static_cast<std::int64_t>(left), kTogether, [&](std::int64_t n) {
+    const Node& node = nodes[static_cast<std::size_t>(n)];
+    node_at.at(node.x, node.y, node.z) = static_cast<std::uint32_t>(n);
+  });
 }
 
 }  // namespace dubsar
