@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/base/system/large_pages.h"
+#include "core/base/system/parallel.h"
 #include "core/contact/vertex_fans.h"
 
 namespace dubsar {
@@ -14,6 +16,27 @@ namespace dubsar {
 /// A list of ids for each of some things, each with its weight in averages, in one piece of memory.
 class IdLists {
  public:
+  IdLists() = default;
+  /// The lists of all parts, one after another.
+  explicit IdLists(const std::vector<IdLists>& parts) {
+    std::vector<std::int64_t> first_list, first_id;
+    for (const IdLists& part : parts) {
+      first_list.push_back(static_cast<std::int64_t>(part.size()));
+      first_id.push_back(static_cast<std::int64_t>(part.ids_.size()));
+    }
+    resize_large(first_, static_cast<std::size_t>(exclusive_scan(first_list)) + 1);
+    resize_large(ids_, static_cast<std::size_t>(exclusive_scan(first_id)));
+    resize_large(weights_, ids_.size());
+    parallel_for(static_cast<std::int64_t>(parts.size()), 1, [&](std::int64_t p) {
+      const auto at = static_cast<std::size_t>(p);
+      const IdLists& part = parts[at];
+      std::transform(part.first_.begin() + 1, part.first_.end(), first_.begin() + first_list[at] + 1,
+                     [&](std::uint32_t end) { return static_cast<std::uint32_t>(first_id[at]) + end; });
+      std::copy(part.ids_.begin(), part.ids_.end(), ids_.begin() + first_id[at]);
+      std::copy(part.weights_.begin(), part.weights_.end(), weights_.begin() + first_id[at]);
+    });
+  }
+
   std::size_t size() const noexcept { return first_.size() - 1; }
   std::span<const std::uint32_t> operator[](std::size_t i) const noexcept {
     return std::span(ids_).subspan(first_[i], first_[i + 1] - first_[i]);
@@ -57,36 +80,33 @@ struct InterfaceRings {
         return id != other.id ? id < other.id : weight < other.weight;  // diagonals first
       }
     };
-    std::vector<std::uint32_t> place(mesh.added.size() +
-                                     1);  // first the neighbours of each vertex, then where they lie
-    const auto each_pair = [&](const auto& visit) {
-      for (const Triangle& t : mesh.triangles)
-        for (const std::uint32_t v : t)
-          for (const std::uint32_t w : t)
-            if (w != v && v >= dual) visit(v - dual, Neighbour{w, 1.0f});
-      for (const std::uint32_t first : mesh.quads) {
-        const auto corner = corners_of_quad(mesh, first);
-        for (std::size_t k = 0; k < 4; ++k)
-          if (const std::uint32_t v = corner[k], w = corner[(k + 2) % 4]; w != v && v >= dual)
-            visit(v - dual, Neighbour{w, kDiagonal});
+    constexpr std::int64_t kTogether = 1 << 12;  ///< vertices whose neighbours one thread lists
+    const auto count = static_cast<std::int64_t>(mesh.added.size());
+    std::vector<IdLists> of_all(static_cast<std::size_t>((count + kTogether - 1) / kTogether)), of_added(of_all.size());
+    parallel_chunks(count, kTogether, [&](std::int64_t begin, std::int64_t end) {
+      const auto part = static_cast<std::size_t>(begin / kTogether);
+      std::vector<Neighbour> around;
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+        const auto own = static_cast<std::uint32_t>(dual + i);
+        around.clear();
+        for (const std::uint32_t t : fans.triangles[i])
+          for (const std::uint32_t w : mesh.triangles[t])
+            if (w != own) around.push_back({w, 1.0f});
+        for (const std::uint32_t c : fans.corners[i])
+          if (const std::uint32_t w = corners_of_quad(mesh, mesh.quads[c / 4])[(c + 2) % 4]; w != own)
+            around.push_back({w, kDiagonal});
+        std::sort(around.begin(), around.end());
+        for (auto n = around.begin(); n != around.end(); ++n) {
+          if (n != around.begin() && n->id == (n - 1)->id) continue;
+          of_all[part].add(n->id, n->weight);
+          if (n->id >= dual) of_added[part].add(n->id - dual, n->weight);
+        }
+        of_all[part].end_list();
+        of_added[part].end_list();
       }
-    };
-    each_pair([&](std::uint32_t i, const Neighbour&) { ++place[i + 1]; });
-    for (std::size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
-    std::vector<Neighbour> around(place.back());
-    std::vector<std::uint32_t> next(place.begin(), place.end() - 1);
-    each_pair([&](std::uint32_t i, const Neighbour& neighbour) { around[next[i]++] = neighbour; });
-    for (std::size_t i = 0; i < mesh.added.size(); ++i) {
-      const auto begin = around.begin() + std::ptrdiff_t{place[i]}, end = around.begin() + std::ptrdiff_t{next[i]};
-      std::sort(begin, end);
-      for (auto n = begin; n != end; ++n) {
-        if (n != begin && n->id == (n - 1)->id) continue;
-        all.add(n->id, n->weight);
-        if (n->id >= dual) added.add(n->id - dual, n->weight);
-      }
-      all.end_list();
-      added.end_list();
-    }
+    });
+    all = IdLists(of_all);
+    added = IdLists(of_added);
   }
 };
 
