@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <unordered_map>
 
 #include "core/contact/dents.h"
 #include "core/contact/film_refine.h"
@@ -120,51 +119,33 @@ void drop_small_films(const InterfaceRings& rings, const std::vector<float>& str
   });
 }
 
-/// Neighbours of the added vertices as places in one array: the added ones, and behind them those of the surface.
-struct Beside {
-  IdLists ids;
-  std::vector<glm::vec3> surface;
-
-  Beside(const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions) {
-    const auto dual = static_cast<std::uint32_t>(dual_positions.size()),
-               added = static_cast<std::uint32_t>(rings.all.size());
-    std::unordered_map<std::uint32_t, std::uint32_t> place;
-    for (std::size_t i = 0; i < added; ++i) {
-      rings.all.each(i, [&](std::uint32_t w, float weight) {
-        if (w >= dual) {
-          ids.add(w - dual, weight);
-          return;
-        }
-        const auto [at, fresh] = place.try_emplace(w, static_cast<std::uint32_t>(added + surface.size()));
-        if (fresh) surface.push_back(dual_positions[w]);
-        ids.add(at->second, weight);
-      });
-      ids.end_list();
-    }
-  }
-};
-
 /// Films by one round, what is inferred until it is a membrane between them and the surface.
-void relax(InterfaceMesh& mesh, const Beside& beside, const std::vector<std::uint8_t>& evidence, float most) {
-  std::vector<glm::vec3> now = mesh.added;
-  now.insert(now.end(), beside.surface.begin(), beside.surface.end());
-  std::vector<glm::vec3> next = now;
-  const auto round = [&](std::uint8_t which, float share) {
-    each_vertex(evidence.size(), [&](std::size_t i) {
-      next[i] = now[i];
-      if (evidence[i] != which || beside.ids[i].empty()) return;
-      glm::vec3 mean(0.0f);
-      const float weights = beside.ids.each(i, [&](std::uint32_t w, float weight) { mean += weight * now[w]; });
-      mean /= weights;
-      const glm::vec3 step = now[i] + share * (mean - now[i]) - mesh.added[i];
-      const float length = glm::length(step);
-      next[i] = mesh.added[i] + (length > most ? most / length : 1.0f) * step;
-    });
-    now.swap(next);
+void relax(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
+           const std::vector<std::uint8_t>& evidence, float most) {
+  const std::vector<glm::vec3> start = mesh.added;
+  const auto dual = static_cast<std::uint32_t>(dual_positions.size());
+  const auto relax_those = [&](std::uint8_t which, int rounds, float share) {
+    std::vector<std::uint32_t> those;
+    for (std::uint32_t i = 0; i < evidence.size(); ++i)
+      if (evidence[i] == which && !rings.all[i].empty()) those.push_back(i);
+    std::vector<glm::vec3> next(those.size());
+    for (int round = 0; round < rounds; ++round) {
+      each_vertex(those.size(), [&](std::size_t k) {
+        const std::uint32_t i = those[k];
+        glm::vec3 mean(0.0f);
+        const float weights = rings.all.each(i, [&](std::uint32_t w, float weight) {
+          mean += weight * (w < dual ? dual_positions[w] : mesh.added[w - dual]);
+        });
+        mean /= weights;
+        const glm::vec3 step = mesh.added[i] + share * (mean - mesh.added[i]) - start[i];
+        const float length = glm::length(step);
+        next[k] = start[i] + (length > most ? most / length : 1.0f) * step;
+      });
+      each_vertex(those.size(), [&](std::size_t k) { mesh.added[those[k]] = next[k]; });
+    }
   };
-  for (int k = 0; k < kFilmRounds; ++k) round(kFilm, 0.5f);
-  for (int k = 0; k < kMembraneRounds; ++k) round(kInferred, 1.0f);
-  std::copy(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(mesh.added.size()), mesh.added.begin());
+  relax_those(kFilm, kFilmRounds, 0.5f);
+  relax_those(kInferred, kMembraneRounds, 1.0f);
 }
 
 }  // namespace
@@ -192,7 +173,7 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
     }
   }
 
-  relax(mesh, Beside(rings, dual_positions), evidence, options.most);
+  relax(mesh, rings, dual_positions, evidence, options.most);
   std::vector<float> follows(evidence.size());
   for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? 1.0f : 0.0f;
   follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
