@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/base/numbers/median.h"
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/contact/kernels/dip_rows.h"
 #include "core/contact/kernels/row_sums.h"
 
@@ -347,17 +347,30 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
   });
   if (progress.cancelled()) return cancelled_error();
   // What clay shows far from the contact, in a robust measure: pores and grains are few.
-  std::vector<float> quiet;
-  for (std::size_t i = 0; i < band.nodes.size(); ++i)
-    if (band.nodes[i].distance > 0.8f * band.reach_at(band.nodes[i].height) && dips.strength[i] > kNoDip)
-      quiet.push_back(dips.strength[i]);
+  const auto count = static_cast<std::int64_t>(band.nodes.size());
+  constexpr std::int64_t kTogether = 1 << 16;
+  std::vector<float> quiet =
+      parallel_gather<float>(count, kTogether, [&](std::int64_t begin, std::int64_t end, std::vector<float>& found) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+          if (band.nodes[i].distance > 0.8f * band.reach_at(band.nodes[i].height) && dips.strength[i] > kNoDip)
+            found.push_back(dips.strength[i]);
+      });
   const float level = median(quiet);
-  float most = 0.0f;
-  for (const float v : dips.strength)
-    if (v > kNoDip) most = std::max(most, std::abs(v - level));
+  const float most = parallel_reduce(
+      count, kTogether, 0.0f,
+      [&](std::int64_t begin, std::int64_t end) {
+        float most_here = 0.0f;
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+          if (const float v = dips.strength[i]; v > kNoDip) most_here = std::max(most_here, std::abs(v - level));
+        return most_here;
+      },
+      [](float a, float b) { return std::max(a, b); });
   for (float& v : quiet) v = std::abs(v - level);
   dips.deviation = std::max({1.4826f * median(std::move(quiet)), kLeastNoise * most, least_deviation, 1e-30f});
-  for (float& v : dips.strength) v = v > kNoDip ? (v - level) / dips.deviation : 0.0f;
+  parallel_for(count, kTogether, [&](std::int64_t i) {
+    float& v = dips.strength[static_cast<std::size_t>(i)];
+    v = v > kNoDip ? (v - level) / dips.deviation : 0.0f;
+  });
   return dips;
 }
 

@@ -36,12 +36,13 @@ float dip_along(const ContactBand& band, const Dips& dips, std::uint32_t n, std:
 template <class Along>
 std::vector<float> crossings_along(const ContactBand& band, const ContactEdges& edges, const Along& along) {
   std::vector<float> crossings(edges.all().size(), 0.5f);
-  for (std::size_t i = 0; i < crossings.size(); ++i) {
-    const GridEdge& e = edges.all()[i];
+  parallel_for(static_cast<std::int64_t>(crossings.size()), 1 << 12, [&](std::int64_t i) {
+    const GridEdge& e = edges.all()[static_cast<std::size_t>(i)];
     const glm::ivec3 p(e.x, e.y, e.z);
     const std::uint32_t n = band.at(p), m = band.at(p + unit_step(e.axis));
-    if (n != ContactBand::kNone && m != ContactBand::kNone) crossings[i] = along(n, m, e.axis);
-  }
+    if (n != ContactBand::kNone && m != ContactBand::kNone)
+      crossings[static_cast<std::size_t>(i)] = along(n, m, e.axis);
+  });
   return crossings;
 }
 
