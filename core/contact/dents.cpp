@@ -1,8 +1,11 @@
 #include "core/contact/dents.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+#include <utility>
 
 #include "core/contact/ring_average.h"
 
@@ -23,21 +26,26 @@ std::vector<float> dent_depths(const InterfaceMesh& mesh, const InterfaceRings& 
                                const std::vector<glm::vec3>& dual_positions) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
   const std::vector<glm::vec3> up = unit_normals(mesh, rings, dual_positions, kNormalRounds);
-  std::vector<glm::vec3> sheet = mesh.added, next = mesh.added;
+  // By ids as in triangles; of four numbers, which are loaded and added at once.
+  std::vector<glm::vec4> sheet(dual + mesh.added.size());
+  for (std::size_t v = 0; v < sheet.size(); ++v)
+    sheet[v] = glm::vec4(v < dual ? dual_positions[v] : mesh.added[v - dual], 0.0f);
+  std::vector<glm::vec4> next = sheet;
   for (int round = 0; round < kSpanRounds; ++round) {
-    each_vertex(sheet.size(), [&](std::size_t i) {
-      next[i] = sheet[i];
+    each_vertex(up.size(), [&](std::size_t i) {
+      const glm::vec4 own = sheet[dual + i];
+      next[dual + i] = own;
       if (rings.all[i].empty()) return;
-      glm::vec3 mean(0.0f);
-      const float weights = rings.all.each(
-          i, [&](std::uint32_t w, float weight) { mean += weight * (w < dual ? dual_positions[w] : sheet[w - dual]); });
+      glm::vec4 mean(0.0f);
+      const float weights = rings.all.each(i, [&](std::uint32_t w, float weight) { mean += weight * sheet[w]; });
       mean /= weights;
-      next[i] += std::max(glm::dot(mean - sheet[i], up[i]), 0.0f) * up[i];
+      next[dual + i] += glm::vec4(std::max(glm::dot(glm::vec3(mean - own), up[i]), 0.0f) * up[i], 0.0f);
     });
     sheet.swap(next);
   }
-  std::vector<float> depth(sheet.size());
-  for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = glm::dot(sheet[i] - mesh.added[i], up[i]);
+  std::vector<float> depth(up.size());
+  each_vertex(depth.size(),
+              [&](std::size_t i) { depth[i] = glm::dot(glm::vec3(sheet[dual + i]) - mesh.added[i], up[i]); });
   return depth;
 }
 
@@ -49,13 +57,19 @@ std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings
   std::vector<std::uint8_t> by_chance(depth.size(), 0);
   each_vertex(depth.size(), [&](std::size_t i) {
     if (!in_dent(i) || !rules.has(ContactRule::kDents)) return;
-    std::vector<std::uint32_t> nearest{static_cast<std::uint32_t>(i)};
+    std::vector<std::uint32_t> nearest;
+    std::array<std::uint32_t, 256> listed{};  // 1 + who of those with such an id was listed last: seldom two
+    const auto list = [&](std::uint32_t w) {
+      const std::uint32_t last = std::exchange(listed[w % listed.size()], w + 1);
+      if (last == w + 1) return;
+      if (last == 0 || std::find(nearest.begin(), nearest.end(), w) == nearest.end()) nearest.push_back(w);
+    };
+    list(static_cast<std::uint32_t>(i));
     float sum = 0.0f;
     for (std::size_t k = 0; k < nearest.size(); ++k) {
       sum += std::min(mesh.strength[nearest[k]], kMostDentStrength);
       for (const std::uint32_t w : rings.added[nearest[k]])
-        if (nearest.size() < kNearest && in_dent(w) && std::find(nearest.begin(), nearest.end(), w) == nearest.end())
-          nearest.push_back(w);
+        if (nearest.size() < kNearest && in_dent(w)) list(w);
     }
     const auto count = static_cast<float>(nearest.size());
     by_chance[i] = sum / count < plain.strength + kDentSignificance * plain.deviation / std::sqrt(count);
