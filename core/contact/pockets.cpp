@@ -109,28 +109,31 @@ std::vector<SurfaceHint> hints_of_faces(const SurfaceModel& model, const Contact
   std::vector<bool> silent(band.nodes.size(), false);
   for (const ClayCavity& cavity : off_contact)
     for (const std::uint32_t n : cavity) silent[n] = true;
-  std::vector<SurfaceHint> hints;
-  for (const BandFace& face : faces) {
+  const auto add_hints = [&](const BandFace& face, std::vector<SurfaceHint>& hints) {
     const PartitionKind kind = model.partitions[model.quad_partition[face.quad]].kind;
     const bool rest = kind == PartitionKind::kPores;
-    if (rest && silent[face.node]) continue;
+    if (rest && silent[face.node]) return;
     const bool tablet = kind == PartitionKind::kTablet;
     const bool envelope = kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
-    if (!rest && !tablet && !envelope) continue;
+    if (!rest && !tablet && !envelope) return;
     const ClaySide own = tablet ? ClaySide::kTablet : ClaySide::kEnvelope;
     if (!rest && band.nodes[face.node].distance > kVoteRim) {
       hints.push_back({face.node, own, kCertain});
-      continue;
+      return;
     }
     if (!rest) hints.push_back({face.node, own, kRimVote});
     const glm::vec3 n = area_vector(model.mesh, face.quad);
     const float length = glm::length(n);
-    if (!(length > 0.0f)) continue;
+    if (!(length > 0.0f)) return;
     const float facing = glm::dot(n, band.normal(face.node)) / length;
     hints.push_back(
         {face.node, facing > 0.0f ? ClaySide::kTablet : ClaySide::kEnvelope, kFacingVote * std::abs(facing)});
-  }
-  return hints;
+  };
+  return parallel_gather<SurfaceHint>(static_cast<std::int64_t>(faces.size()), 1 << 14,
+                                      [&](std::int64_t begin, std::int64_t end, std::vector<SurfaceHint>& hints) {
+                                        for (std::int64_t i = begin; i < end; ++i)
+                                          add_hints(faces[static_cast<std::size_t>(i)], hints);
+                                      });
 }
 
 std::int64_t relabel_faces(SurfaceModel& model, const RestPieces& pieces, const std::vector<BandFace>& faces,
