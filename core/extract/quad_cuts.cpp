@@ -124,12 +124,12 @@ std::optional<std::size_t> find_face_point(std::span<const FacePoint> points, st
   return static_cast<std::size_t>(found - points.begin());
 }
 
-QuadCuts find_cuts(const QuadMesh& mesh, FacePoints face_points) {
+QuadCuts find_cuts(const QuadMesh& mesh) {
   QuadCuts cuts;
   resize_large(cuts.of_quad, mesh.quads.size());
   parallel_for(mesh.quad_count(), kCutsGrain,
                [&](std::int64_t q) { cuts.of_quad[index(q)] = cut_of_quad(mesh, static_cast<std::uint32_t>(q)); });
-  if (face_points != FacePoints::kNone) Marking(mesh).run(cuts);
+  Marking(mesh).run(cuts);
   return cuts;
 }
 

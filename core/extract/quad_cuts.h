@@ -39,10 +39,7 @@ struct QuadCuts {
   std::vector<std::uint32_t> touching;  ///< first vertices of cells whose polygons touch or cross all the same, rising
 };
 
-/// kNone: sides stay straight, and polygons at cells of several pieces may cross; for what has vertices on those sides.
-enum class FacePoints : std::uint8_t { kWhereTheyPart, kNone };
-
 /// All threads, deterministic; about 40 ns an x-quad and thread, and 5 us a cell of several pieces.
-QuadCuts find_cuts(const QuadMesh& mesh, FacePoints face_points = FacePoints::kWhereTheyPart);
+QuadCuts find_cuts(const QuadMesh& mesh);
 
 }  // namespace dubsar

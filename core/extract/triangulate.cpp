@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 #include "core/base/result.h"
 #include "core/base/system/large_pages.h"
@@ -86,10 +87,8 @@ class Cutter {
     std::int64_t triangles = 0, steiner = 0;
   };
 
-  Cutter(const QuadMesh& mesh, std::span<const glm::vec3> normals, FacePoints face_points, std::uint32_t guided)
-      : mesh_(mesh), normals_(normals), guided_(guided) {
-    if (mesh.embedded) cuts_ = find_cuts(mesh, face_points);
-  }
+  Cutter(const QuadMesh& mesh, std::span<const glm::vec3> normals, std::uint32_t guided, QuadCuts cuts)
+      : mesh_(mesh), normals_(normals), guided_(guided), cuts_(std::move(cuts)) {}
   const std::vector<FacePoint>& face_points() const { return cuts_.face_points; }
 
   Count count(std::uint32_t q) const {
@@ -166,10 +165,11 @@ class Cutter {
 }  // namespace
 
 Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals, std::size_t more,
-                          FacePoints face_points, std::uint32_t guided) {
+                          std::uint32_t guided, std::optional<QuadCuts> cuts) {
   DUBSAR_CHECK(vertex_normals.empty() || vertex_normals.size() == mesh.positions.size());
   Triangulation result;
-  const Cutter cutter(mesh, vertex_normals, face_points, guided);
+  if (!cuts) cuts = mesh.embedded ? find_cuts(mesh) : QuadCuts{};
+  const Cutter cutter(mesh, vertex_normals, guided, std::move(*cuts));
   const std::int64_t quads = mesh.quad_count();
   const std::int64_t chunks = (quads + kQuadsPerChunk - 1) / kQuadsPerChunk;
   std::vector<std::int64_t> triangle_start(static_cast<std::size_t>(chunks)),

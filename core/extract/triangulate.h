@@ -2,6 +2,7 @@
 // X-quads to triangles such that every edge stays simple, whatever the input, and that none cross where vertices lie in
 // their cells (docs/manifold.md): a diagonal in the envelope of the grid edge, else a fan from a point of that edge.
 
+#include <optional>
 #include <span>
 
 #include "core/extract/quad_cuts.h"
@@ -24,8 +25,9 @@ struct Triangulation {
 /// Either way a 4-gon that is not convex in its mean plane is cut at its reflex corner; ties: the diagonal with the
 /// lowest vertex id. Where nothing is promised 5- and 6-gons take only diagonals between opposite corners, and adjacent
 /// doubled corners a fan from the mean of the vertices. Deterministic for any thread count. About 100 ns a quad and
-/// thread. Behind the triangles there is room for `more`. Normals guide x-quads [0, guided).
+/// thread. Behind the triangles there is room for `more`. Normals guide x-quads [0, guided). `cuts`: find_cuts() of an
+/// embedded mesh, where it is known.
 Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals, std::size_t more = 0,
-                          FacePoints face_points = FacePoints::kWhereTheyPart, std::uint32_t guided = 0xffffffffu);
+                          std::uint32_t guided = 0xffffffffu, std::optional<QuadCuts> cuts = std::nullopt);
 
 }  // namespace dubsar

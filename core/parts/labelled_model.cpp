@@ -203,7 +203,7 @@ bool is_mesh_at_air(const QuadMesh& mesh, const LabelledMesh& labelled) {
   return found == mesh.doubled.size();
 }
 
-void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled) {
+void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled, std::optional<QuadCuts> cuts) {
   std::vector<glm::vec3> normals;
   if (!model.attributes.normals.empty()) {
     normals.resize(labelled.mesh.positions.size(), glm::vec3(0.0f));
@@ -211,7 +211,7 @@ void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled) {
     for (std::size_t v = 0; v < normals.size(); ++v)
       if (number[v] < model.attributes.normals.size()) normals[v] = model.attributes.normals[number[v]];
   }
-  Triangulation cut = triangulate(labelled.mesh, normals, 0, FacePoints::kWhereTheyPart, labelled.first_contact);
+  Triangulation cut = triangulate(labelled.mesh, normals, 0, labelled.first_contact, std::move(cuts));
   normals = {};
   labelled.mesh.first_incident = {};
   labelled.mesh.incident = {};

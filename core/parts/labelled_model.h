@@ -2,6 +2,7 @@
 // A labelled mesh as the surface of a model: what lies at the air is its mesh, the contact its first patch, and both
 // share vertices (docs/manifold.md).
 
+#include <optional>
 #include <vector>
 
 #include "core/base/result.h"
@@ -21,8 +22,8 @@ bool is_mesh_at_air(const QuadMesh& mesh, const LabelledMesh& labelled);
 
 /// The triangles of such a model: triangulate() of all its x-quads together, guided by the model's normals where it has
 /// any. Points that are added in the contact are known as the first vertex of their x-quad that is not at the air.
-/// `labelled` has the same places as the model.
-void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled);
+/// `labelled` has the same places as the model. `cuts`: find_cuts() of it, where it is known.
+void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled, std::optional<QuadCuts> cuts = std::nullopt);
 
 /// The places of the vertices of the labelled mesh of such a model, in their order.
 std::vector<glm::vec3> labelled_places(const SurfaceModel& model, const LabelledMesh& labelled);

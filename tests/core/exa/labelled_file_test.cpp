@@ -5,6 +5,8 @@
 #include "core/exa/exa_plausible.h"
 #include "core/exa/exa_salvage.h"
 #include "core/exa/offsets/settle_labelled.h"
+#include "core/exa/values/exact.h"
+#include "core/extract/cell_box.h"
 #include "core/mesh/mesh_check.h"
 #include "tests/core/exa/exa_test_models.h"
 #include "tests/core/extract/labelled_help.h"
@@ -42,8 +44,12 @@ SurfaceModel labelled_model(const Labels& volume, unsigned seed, float moved, in
   for (std::size_t v = labelled.first_mixed; v < labelled.mesh.positions.size(); ++v)
     if (!labelled.is_at_air(v)) surface.evidence.push_back(static_cast<std::uint8_t>(2 + random() % 2));
   if (moved > 0.0f)
-    for (glm::vec3& p : labelled.mesh.positions)
-      if (random() % 8 == 0) p += glm::vec3(uniform(random), uniform(random), uniform(random));
+    for (std::size_t v = 0; v < labelled.mesh.positions.size(); ++v) {
+      if (random() % 8 != 0) continue;
+      glm::vec3& p = labelled.mesh.positions[v];
+      const glm::vec3 wanted = p + glm::vec3(uniform(random), uniform(random), uniform(random));
+      p = v < labelled.first_mixed ? escaped(p, *escape_to(p, kept_in_cell(p, wanted))) : wanted;  // as settled ones do
+    }
   EXPECT_TRUE(settle_labelled(model, std::move(labelled), CurvatureMethod::kFit, false, progress));
   return model;
 }

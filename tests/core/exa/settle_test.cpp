@@ -5,6 +5,7 @@
 #include "core/exa/offsets/offset_choice.h"
 #include "core/exa/offsets/offsets.h"
 #include "core/exa/values/exact.h"
+#include "core/extract/cell_box.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/exact_crossings.h"
 #include "core/mesh/mesh_check.h"
@@ -159,6 +160,30 @@ TEST(ExaSettle, ASettledSurfaceCrossesItselfNowhereAlsoWhenItIsReadAgain) {
     const SurfaceModel read = decode_exa(file_of(blocks), progress).value();
     EXPECT_TRUE(read.mesh.embedded);
     EXPECT_EQ(make_tri_mesh(read).value().triangles, mesh.triangles) << seed;
+  }
+}
+
+TEST(ExaSettle, ASettledVertexLiesAtThePlaceNextToItselfInItsCellThatAFileHolds) {
+  for (const unsigned seed : {61u, 62u, 63u, 64u, 65u}) {
+    SilentProgress progress;
+    SurfaceModel model = sample_model({24, 21, 70}, seed % 2 == 0 ? Kind::kBlob : Kind::kNoise, seed);
+    model.attributes = {};
+    model.mesh = build_quad_mesh(model.samples, progress).value();
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> uniform(-0.6f, 0.6f);
+    for (glm::vec3& p : model.mesh.positions)  // to the walls of their cells, and to the border of the grid
+      p = kept_in_cell(p, p + glm::vec3(uniform(random), uniform(random), uniform(random)));
+    ASSERT_TRUE(settle_for_exa(model, {}, progress)) << seed;
+    const QuadMesh base = build_quad_mesh(model.samples, progress).value();
+    int gone = 0;
+    for (std::size_t v = 0; v < base.positions.size(); ++v) {
+      const glm::vec3 &from = base.positions[v], &place = model.mesh.positions[v];
+      const auto k = escape_to(from, kept_in_cell(from, place));
+      ASSERT_TRUE(k) << seed << " vertex " << v;
+      EXPECT_EQ(escaped(from, *k), place) << seed << " vertex " << v;
+      gone += from != place;
+    }
+    EXPECT_GT(gone, 100) << seed;
   }
 }
 
