@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
 
 namespace dubsar {
@@ -39,7 +40,8 @@ void QuadMesh::mark_doubled() {
 
 void QuadMesh::build_incidence() {
   mark_doubled();
-  first_incident.assign(positions.size() + 1, 0);
+  first_incident = {};
+  resize_large(first_incident, positions.size() + 1);
   const auto for_each = [&](const auto& visit) {
     parallel_for(quad_count(), 1 << 14, [&](std::int64_t q) {
       for (const std::uint32_t v : quads[static_cast<std::size_t>(q)]) visit(v, static_cast<std::uint32_t>(q));
@@ -53,7 +55,7 @@ void QuadMesh::build_incidence() {
   std::uint32_t sum = 0;
   for (std::uint32_t& count : first_incident) count = sum += count;
   if (incident.capacity() < sum) incident = {};  // growing, it would take twice as much
-  incident.resize(sum);
+  resize_large(incident, sum);
   for_each([&](std::uint32_t v, std::uint32_t q) {
     incident[std::atomic_ref(first_incident[v]).fetch_sub(1, std::memory_order_relaxed) - 1] = q;
   });

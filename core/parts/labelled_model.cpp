@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/vertex_attributes.h"
@@ -12,33 +13,61 @@ namespace dubsar {
 namespace {
 
 /// The number that each vertex of a labelled mesh has in a model: of those at the air in its mesh, then of the others.
-std::vector<std::uint32_t> numbers_in_model(const LabelledMesh& labelled) {
-  const std::size_t count = labelled.mesh.positions.size();
-  std::uint32_t next = 0;
-  std::vector<std::uint32_t> number(count);
-  for (const bool air : {true, false})
-    for (std::size_t v = air ? 0 : labelled.first_mixed; v < count; ++v)
-      if (labelled.is_at_air(v) == air) number[v] = next++;
-  return number;
-}
+/// Those of cells without clay of both keep theirs.
+class NumbersInModel {
+ public:
+  explicit NumbersInModel(const LabelledMesh& labelled)
+      : first_mixed_(labelled.first_mixed), mixed_(labelled.at_air.size()) {
+    std::uint32_t next = first_mixed_;
+    for (const bool air : {true, false})
+      for (std::size_t i = 0; i < mixed_.size(); ++i)
+        if ((labelled.at_air[i] != 0) == air) mixed_[i] = next++;
+  }
+  std::uint32_t operator[](std::size_t v) const {
+    return v < first_mixed_ ? static_cast<std::uint32_t>(v) : mixed_[v - first_mixed_];
+  }
+
+ private:
+  std::uint32_t first_mixed_;
+  std::vector<std::uint32_t> mixed_;
+};
 
 std::size_t vertices_at_air(const LabelledMesh& labelled) {
   return labelled.first_mixed + static_cast<std::size_t>(std::ranges::count(labelled.at_air, std::uint8_t{1}));
 }
 
-/// What lies at the air, without incidences: vertices below `dual`, by their numbers.
-QuadMesh mesh_with_numbers(const LabelledMesh& labelled, const std::vector<std::uint32_t>& number, std::size_t dual) {
+/// Puts the first `count` items of one vector into another, which gets room for `size`, on large pages.
+template <class T>
+void copy_first(const std::vector<T>& from, std::size_t count, std::size_t size, std::vector<T>& to) {
+  to.reserve(size);
+  ask_for_large_pages(to.data(), size * sizeof(T));
+  to.assign(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+/// What lies at the air: vertices below `dual`, by their numbers.
+QuadMesh mesh_at_air(const LabelledMesh& labelled, const NumbersInModel& number, std::size_t dual) {
+  const QuadMesh& from = labelled.mesh;
+  const std::uint32_t first_mixed = labelled.first_mixed, first_contact = labelled.first_contact;
   QuadMesh mesh;
-  mesh.embedded = labelled.mesh.embedded;
-  mesh.positions.resize(dual);
-  for (std::size_t v = 0; v < number.size(); ++v)
-    if (number[v] < dual) mesh.positions[number[v]] = labelled.mesh.positions[v];
-  mesh.quads.assign(labelled.mesh.quads.begin(), labelled.mesh.quads.begin() + labelled.first_contact);
+  mesh.embedded = from.embedded;
+  copy_first(from.positions, first_mixed, dual, mesh.positions);
+  copy_first(from.quads, first_contact, first_contact, mesh.quads);
+  copy_first(from.first_incident, first_mixed + std::size_t{1}, dual + 1, mesh.first_incident);
+  copy_first(from.incident, from.first_incident[first_mixed], from.incident.size(), mesh.incident);
+  for (std::uint32_t v = first_mixed; v < from.positions.size(); ++v) {
+    if (!labelled.is_at_air(v)) continue;
+    const auto around = from.quads_of(v);
+    mesh.positions.push_back(from.positions[v]);
+    mesh.incident.insert(mesh.incident.end(), around.begin(), std::ranges::lower_bound(around, first_contact));
+    mesh.first_incident.push_back(static_cast<std::uint32_t>(mesh.incident.size()));
+  }
   parallel_for(mesh.quad_count(), 1 << 14, [&](std::int64_t q) {
-    for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = number[v];
+    for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)])
+      if (v >= first_mixed) v = number[v];
   });
-  for (const DoubledCorner& d : labelled.mesh.doubled)
-    if (d.quad < labelled.first_contact) mesh.doubled.push_back({d.quad, number[d.vertex], d.corner});
+  for (const DoubledCorner& d : from.doubled)
+    if (d.quad < first_contact) mesh.doubled.push_back({d.quad, number[d.vertex], d.corner});
+  mesh.mark_doubled();
   return mesh;
 }
 
@@ -48,8 +77,8 @@ class Divided {
   Divided(const LabelledMesh& labelled, Triangulation cut)
       : labelled_(labelled),
         cut_(std::move(cut)),
-        number_(numbers_in_model(labelled)),
-        vertices_(static_cast<std::uint32_t>(number_.size())),
+        number_(labelled),
+        vertices_(static_cast<std::uint32_t>(labelled.mesh.positions.size())),
         dual_(static_cast<std::uint32_t>(vertices_at_air(labelled))),
         centres_(static_cast<std::uint32_t>(cut_.steiner.size() - cut_.face_points.size())),
         first_contact_triangle_(cut_.first_triangle[labelled.first_contact]),
@@ -139,7 +168,7 @@ class Divided {
 
   const LabelledMesh& labelled_;
   Triangulation cut_;
-  std::vector<std::uint32_t> number_;
+  NumbersInModel number_;
   std::uint32_t vertices_, dual_, centres_, centres_at_air_ = 0;
   std::uint32_t first_contact_triangle_;
   std::vector<bool> point_at_air_;  ///< of the points on faces
@@ -158,27 +187,30 @@ Result<void> put_labelled_mesh(SurfaceModel& model, const LabelledMesh& labelled
                          *const envelope = model.partitions.find(PartitionKind::kEnvelopeInside);
   if (tablet == nullptr || envelope == nullptr)
     return fail(ErrorKind::kBadData, "surface_model: labels found, but no tablet in an envelope");
-  const std::vector<std::uint32_t> number = numbers_in_model(labelled);
+  const NumbersInModel number(labelled);
 
   FillPatch patch;
   patch.partition = tablet->id;
   patch.reverse_partition = envelope->id;
   patch.evidence = model.labelled->evidence;
   patch.extra_positions.reserve(vertices - dual);
-  std::vector<std::uint32_t> source(dual);
-  for (std::size_t v = 0; v < vertices; ++v)
-    if (number[v] >= dual)
-      patch.extra_positions.push_back(labelled.mesh.positions[v]);
+  std::vector<std::uint32_t> source;
+  copy_first(labelled.unlabelled, labelled.first_mixed, dual, source);
+  for (std::size_t v = labelled.first_mixed; v < vertices; ++v)
+    if (labelled.is_at_air(v))
+      source.push_back(labelled.unlabelled[v]);
     else
-      source[number[v]] = labelled.unlabelled[v];
-  QuadMesh mesh = mesh_with_numbers(labelled, number, dual);
-  mesh.build_incidence();
-  model.mesh = std::move(mesh);
+      patch.extra_positions.push_back(labelled.mesh.positions[v]);
+  model.mesh = mesh_at_air(labelled, number, dual);
   for_each_attribute([&](const auto& a) {
     auto& values = model.attributes.*a.values;
     if (values.empty()) return;
-    std::remove_reference_t<decltype(values)> gathered(source.size());
-    for (std::size_t i = 0; i < source.size(); ++i) gathered[i] = values[source[i]];
+    std::remove_reference_t<decltype(values)> gathered;
+    resize_large(gathered, source.size());
+    parallel_for(static_cast<std::int64_t>(source.size()), 1 << 14, [&](std::int64_t i) {
+      const auto v = static_cast<std::size_t>(i);
+      gathered[v] = values[source[v]];
+    });
     values = std::move(gathered);
   });
   model.patches.clear();
@@ -191,7 +223,7 @@ Result<void> put_labelled_mesh(SurfaceModel& model, const LabelledMesh& labelled
 bool is_mesh_at_air(const QuadMesh& mesh, const LabelledMesh& labelled) {
   const std::size_t quads = labelled.first_contact;
   if (mesh.positions.size() != vertices_at_air(labelled) || mesh.quads.size() != quads) return false;
-  const std::vector<std::uint32_t> number = numbers_in_model(labelled);
+  const NumbersInModel number(labelled);
   for (std::size_t q = 0; q < quads; ++q)
     for (std::size_t k = 0; k < 4; ++k)
       if (mesh.quads[q][k] != number[labelled.mesh.quads[q][k]]) return false;
@@ -205,11 +237,11 @@ bool is_mesh_at_air(const QuadMesh& mesh, const LabelledMesh& labelled) {
 
 void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled, std::optional<QuadCuts> cuts) {
   std::vector<glm::vec3> normals;
-  if (!model.attributes.normals.empty()) {
-    normals.resize(labelled.mesh.positions.size(), glm::vec3(0.0f));
-    const std::vector<std::uint32_t> number = numbers_in_model(labelled);
-    for (std::size_t v = 0; v < normals.size(); ++v)
-      if (number[v] < model.attributes.normals.size()) normals[v] = model.attributes.normals[number[v]];
+  if (const std::vector<glm::vec3>& known = model.attributes.normals; !known.empty()) {
+    copy_first(known, labelled.first_mixed, labelled.mesh.positions.size(), normals);
+    const NumbersInModel number(labelled);
+    for (std::size_t v = labelled.first_mixed; v < labelled.mesh.positions.size(); ++v)
+      normals.push_back(labelled.is_at_air(v) ? known[number[v]] : glm::vec3(0.0f));
   }
   Triangulation cut = triangulate(labelled.mesh, normals, 0, labelled.first_contact, std::move(cuts));
   normals = {};
@@ -221,9 +253,9 @@ void draw_labelled_mesh(SurfaceModel& model, LabelledMesh labelled, std::optiona
 }
 
 std::vector<glm::vec3> labelled_places(const SurfaceModel& model, const LabelledMesh& labelled) {
-  const std::vector<std::uint32_t> number = numbers_in_model(labelled);
+  const NumbersInModel number(labelled);
   const std::size_t dual = model.mesh.positions.size();
-  std::vector<glm::vec3> places(number.size());
+  std::vector<glm::vec3> places(labelled.mesh.positions.size());
   for (std::size_t v = 0; v < places.size(); ++v)
     places[v] =
         number[v] < dual ? model.mesh.positions[number[v]] : model.patches.front().extra_positions[number[v] - dual];

@@ -5,6 +5,7 @@
 #include <bit>
 #include <span>
 
+#include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
 #include "core/extract/extract.h"
 #include "core/extract/row_kernels.h"
@@ -301,25 +302,32 @@ Result<LabelledMesh> put_labels(QuadMesh unlabelled, ContactQuads contact, const
   each_mixed_cell(result.cells, [&](std::size_t i) {
     Heirs{mesh, dropped, heirs}.look(mixed, result.cells[i], table.config(result.cells[i].config));
   });
-  std::vector<std::uint32_t> new_number(before, kNoVertex);
-  result.unlabelled.reserve(before + own);
+  auto new_number = large_array<std::vector<std::uint32_t>>(before);
+  std::vector<glm::vec3> positions;
+  resize_large(positions, before + own);
+  resize_large(result.unlabelled, before + own);
+  std::uint32_t next = 0;
   for (std::size_t v = 0; v < before; ++v) {
+    new_number[v] = dropped[v] ? kNoVertex : next;
     if (dropped[v]) continue;
-    new_number[v] = static_cast<std::uint32_t>(result.unlabelled.size());
-    mesh.positions[result.unlabelled.size()] = mesh.positions[v];
-    result.unlabelled.push_back(static_cast<std::uint32_t>(v));
+    positions[next] = mesh.positions[v];
+    result.unlabelled[next++] = static_cast<std::uint32_t>(v);
   }
-  result.first_mixed = static_cast<std::uint32_t>(result.unlabelled.size());
-  result.unlabelled.insert(result.unlabelled.end(), heirs.begin(), heirs.end());
-  if (result.cells.empty()) return result;
-
-  mesh.positions.resize(result.first_mixed);
-  mesh.positions.reserve(result.first_mixed + own);  // no more than that
+  result.first_mixed = next;
   result.extracted = std::move(contact.mesh.positions);
-  mesh.positions.insert(mesh.positions.end(), result.extracted.begin(), result.extracted.end());
-  parallel_for(result.first_contact, 1 << 14, [&](std::int64_t q) {
-    for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = new_number[v];
+  std::ranges::copy(result.extracted, positions.begin() + next);
+  std::ranges::copy(heirs, result.unlabelled.begin() + next);
+  positions.resize(next + own);
+  result.unlabelled.resize(next + own);
+  mesh.positions = std::move(positions);
+
+  std::vector<std::array<std::uint32_t, 4>> quads;
+  resize_large(quads, mesh.quads.size() + contact.mesh.quads.size());
+  parallel_for(mesh.quad_count(), 1 << 14, [&](std::int64_t i) {
+    const auto q = static_cast<std::size_t>(i);
+    for (std::size_t k = 0; k < 4; ++k) quads[q][k] = new_number[mesh.quads[q][k]];
   });
+  mesh.quads = std::move(quads);
   std::vector<DoubledCorner> doubled;
   for (const DoubledCorner& d : mesh.doubled)
     if (new_number[d.vertex] != kNoVertex) doubled.push_back({d.quad, new_number[d.vertex], d.corner});
@@ -337,11 +345,9 @@ Result<LabelledMesh> put_labels(QuadMesh unlabelled, ContactQuads contact, const
         });
   });
   add_doubled(more, doubled);
-  mesh.quads.reserve(mesh.quads.size() + contact.mesh.quads.size());
-  for (auto quad : contact.mesh.quads) {
-    for (std::uint32_t& v : quad) v += result.first_mixed;
-    mesh.quads.push_back(quad);
-  }
+  for (std::size_t i = 0; i < contact.mesh.quads.size(); ++i)
+    for (std::size_t k = 0; k < 4; ++k)
+      mesh.quads[result.first_contact + i][k] = contact.mesh.quads[i][k] + result.first_mixed;
   for (const DoubledCorner& d : contact.mesh.doubled)
     doubled.push_back({d.quad + result.first_contact, d.vertex + result.first_mixed, d.corner});
   mesh.doubled = std::move(doubled);
