@@ -127,7 +127,7 @@ std::vector<bool> watertight_bodies(const TriMesh& mesh, const std::vector<Parti
     }
   });
   if (apart && closed) return std::vector<bool>(std::size_t{PartitionTable::kHighest} + 1, true);
-  if (apart) return watertight_parts(mesh.positions, mesh.triangles, bodies);
+  if (apart) return watertight_parts(mesh.positions.size(), mesh.triangles, bodies);
   std::vector<bool> watertight(PartitionTable::kMost, false);
   for (std::size_t id = 0; id < watertight.size(); ++id) {
     std::vector<Triangle> own;

@@ -166,10 +166,10 @@ namespace {
 /// What of a mesh belongs to which label; without labels all is of one.
 using Labels = std::span<const PartitionId>;
 
-/// All but components and the Euler number.
-std::vector<MeshCheck> check_labelled(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
-                                      Labels labels, std::size_t label_count, std::vector<std::uint32_t>& first) {
-  const std::size_t vertices = positions.size();
+/// All but components and the Euler number; triangles without area where there are `positions` of the vertices.
+std::vector<MeshCheck> check_labelled(std::size_t vertices, std::span<const glm::vec3> positions,
+                                      std::span<const Triangle> triangles, Labels labels, std::size_t label_count,
+                                      std::vector<std::uint32_t>& first) {
   DUBSAR_CHECK(triangles.size() < (std::size_t{1} << 32) / 3);
   const auto label_of = [&](std::size_t triangle) { return labels.empty() ? std::size_t{0} : labels[triangle]; };
   using Checks = std::vector<MeshCheck>;
@@ -188,7 +188,7 @@ std::vector<MeshCheck> check_labelled(std::span<const glm::vec3> positions, std:
           MeshCheck& check = part[label_of(i)];
           ++check.triangles;
           check.degenerate_triangles += degenerate;
-          check.zero_area_triangles += !degenerate && !has_area(positions, t);
+          check.zero_area_triangles += !degenerate && !positions.empty() && !has_area(positions, t);
         }
         return part;
       },
@@ -219,19 +219,19 @@ std::vector<MeshCheck> check_labelled(std::span<const glm::vec3> positions, std:
 
 MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Triangle> triangles) {
   std::vector<std::uint32_t> first;
-  MeshCheck check = check_labelled(positions, triangles, {}, 1, first).front();
+  MeshCheck check = check_labelled(positions.size(), positions, triangles, {}, 1, first).front();
   check.components = count_components(positions.size(), triangles, first);
   check.euler = check.vertices - check.edges + (check.triangles - check.degenerate_triangles);
   return check;
 }
 
-std::vector<bool> watertight_parts(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
+std::vector<bool> watertight_parts(std::size_t vertices, std::span<const Triangle> triangles,
                                    std::span<const PartitionId> parts) {
   DUBSAR_CHECK(parts.size() == triangles.size());
   std::vector<std::uint32_t> first;
   std::vector<bool> watertight;
   for (const MeshCheck& check :
-       check_labelled(positions, triangles, parts, std::size_t{PartitionTable::kHighest} + 1, first))
+       check_labelled(vertices, {}, triangles, parts, std::size_t{PartitionTable::kHighest} + 1, first))
     watertight.push_back(check.watertight());
   return watertight;
 }

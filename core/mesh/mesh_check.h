@@ -35,7 +35,7 @@ MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Trian
 
 /// For each partition id whether its triangles alone are watertight(). Partitions must not share vertices. Cost as
 /// check_mesh(), once for all of them.
-std::vector<bool> watertight_parts(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
+std::vector<bool> watertight_parts(std::size_t vertices, std::span<const Triangle> triangles,
                                    std::span<const PartitionId> parts);
 
 }  // namespace dubsar

@@ -84,7 +84,7 @@ Result<void> measure_partitions(SurfaceModel& model) {
     return {};
   }
   const SumsOfParts sums = sum_parts(mesh, middle_of_cracks(model).value_or(mesh.positions.front()));
-  const std::vector<bool> watertight = watertight_parts(mesh.positions, mesh.triangles, mesh.triangle_partition);
+  const std::vector<bool> watertight = watertight_parts(mesh.positions.size(), mesh.triangles, mesh.triangle_partition);
   for (std::size_t row = 0; row < model.partitions.size(); ++row) {
     const PartitionId id = model.partitions[row].id;
     model.partitions.measured(id, sums[id].area, sums[id].volume, watertight[id]);

@@ -134,7 +134,7 @@ TEST(MeshCheck, ThreadsDoNotChangeWhatIsFoundInALargeMesh) {
   for (const int threads : {1, 2, 7}) {
     set_thread_count(threads);
     found.push_back(check_mesh(points, triangles));
-    tight.push_back(watertight_parts(points, triangles, parts));
+    tight.push_back(watertight_parts(points.size(), triangles, parts));
   }
   set_thread_count(0);
   EXPECT_GT(found[0].nonmanifold_edges, 100);
