@@ -35,13 +35,9 @@ constexpr float kQuiet = 6.0f;  ///< steps from the contact to the sheets in cla
 using Profile = std::array<float, 2 * kReach + 1>;
 
 float trilinear(const BandDensity& density, const glm::vec3& p) {
-  constexpr int kSide = static_cast<int>(BrickMap<float>::kEdge);
-  const auto floor = [](float v) {  // without a call
-    const int cut = static_cast<int>(v);
-    return cut - static_cast<int>(v < static_cast<float>(cut));
-  };
-  const int x = floor(p.x), y = floor(p.y), z = floor(p.z);
-  const glm::vec3 t = p - glm::vec3(x, y, z);
+  constexpr std::int64_t kSide = BrickMap<float>::kEdge;
+  const glm::vec3 f = glm::floor(p), t = p - f;
+  const auto x = static_cast<std::int64_t>(f.x), y = static_cast<std::int64_t>(f.y), z = static_cast<std::int64_t>(f.z);
   const auto sum = [&](const auto& value) {
     float values = 0.0f;
     for (int k = 0; k < 8; ++k) {
@@ -51,7 +47,7 @@ float trilinear(const BandDensity& density, const glm::vec3& p) {
     }
     return values;
   };
-  const auto in_one_brick = [](int at) { return at >= 0 && at % kSide != kSide - 1; };
+  const auto in_one_brick = [](std::int64_t at) { return at >= 0 && at % kSide != kSide - 1; };
   if (in_one_brick(x) && in_one_brick(y) && in_one_brick(z))
     if (const float* const brick = density.brick(x / kSide, y / kSide, z / kSide)) {
       const float* const first = brick + (z % kSide * kSide + y % kSide) * kSide + x % kSide;
