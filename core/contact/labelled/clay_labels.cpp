@@ -4,10 +4,11 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <unordered_map>
 
 #include "core/base/numbers/disjoint_sets.h"
+#include "core/base/numbers/sort_unique.h"
 #include "core/base/system/parallel_gather.h"
+#include "core/extract/labelled/point_labels.h"
 
 namespace dubsar {
 namespace {
@@ -17,46 +18,56 @@ constexpr std::int64_t kSlab = BrickMap<std::uint32_t>::kEdge;  ///< slices whos
 
 constexpr std::uint32_t kLeastIsland = 64;  ///< nodes; fewer in the midst of the other clay are a speck of the cut
 
-/// Nodes of one side that hang together with no clay beyond the band of the same label, few, beside clay of the other.
-std::vector<std::uint32_t> find_islands(const BitVolume& inside, const ContactBand& band,
-                                        const std::vector<ClaySide>& side, const EnvelopeBits& labels) {
-  constexpr std::uint8_t kAnchored = 1, kBeside = 2;
-  const Dims d = inside.dims();
-  const auto count = static_cast<std::int64_t>(side.size());
-  ConcurrentSets pieces(side.size());
-  std::vector<std::uint8_t> of_node(side.size(), 0), of_piece(side.size(), 0);
-  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
-    const auto n = static_cast<std::uint32_t>(i);
-    each_beside(band.point(n), [&](const glm::ivec3& q) {
-      const std::uint32_t m = band.at(q);
-      if (m != ContactBand::kNone) {
-        if (side[m] != side[n])
-          of_node[n] |= kBeside;
-        else if (n < m)
-          pieces.join(n, m);
-        return;
-      }
-      if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= d.x || q.y >= d.y || q.z >= d.z || !inside.get(q.x, q.y, q.z)) return;
-      const bool envelope = labels.word(q.x >> 6, q.y, q.z) >> (q.x & 63) & 1u;
-      of_node[n] |= envelope == (side[n] == ClaySide::kEnvelope) ? kAnchored : kBeside;
-    });
-  });
-  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
-    const auto n = static_cast<std::uint32_t>(i);
-    std::atomic_ref piece(of_piece[pieces.root(n)]);
-    if ((of_node[n] & ~piece.load(std::memory_order_relaxed)) != 0)
-      piece.fetch_or(of_node[n], std::memory_order_relaxed);
-  });
+/// Of 64 points of a row the clay that has clay of the other beside it.
+std::uint64_t beside_other(const PointLabels& labels, std::int64_t w, std::int64_t y, std::int64_t z) {
+  const auto around = [&](const auto& word_of) {
+    const std::uint64_t here = word_of(w, y, z);
+    return here << 1 | word_of(w - 1, y, z) >> 63 | here >> 1 | word_of(w + 1, y, z) << 63 | word_of(w, y - 1, z) |
+           word_of(w, y + 1, z) | word_of(w, y, z - 1) | word_of(w, y, z + 1);
+  };
+  const auto tablet = [&](auto... at) { return labels.tablet_word(at...); };
+  const auto envelope = [&](auto... at) { return labels.envelope_word(at...); };
+  return (tablet(w, y, z) & around(envelope)) | (envelope(w, y, z) & around(tablet));
+}
+
+/// Nodes of one label that hang together with no clay beyond the band of the same label, few, beside clay of the other.
+std::vector<std::uint32_t> find_islands(const ContactBand& band, const PointLabels& labels) {
   using Nodes = std::vector<std::uint32_t>;
-  Nodes loose =
-      parallel_gather<std::uint32_t>(count, kNodeGrain, [&](std::int64_t begin, std::int64_t end, Nodes& found) {
-        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
-          if (of_piece[pieces.root(n)] == kBeside) found.push_back(n);
+  std::vector<std::uint8_t> anchored(band.nodes.size(), 0);  // known to be of no island
+  /// Does a node hang together with few others, which are put into `piece`?
+  const auto is_island = [&](std::uint32_t n, Nodes& piece) {
+    const PointLabel own = labels.get(band.nodes[n].x, band.nodes[n].y, band.nodes[n].z);
+    bool island = true;
+    piece.assign(1, n);
+    for (std::size_t i = 0; island && i < piece.size(); ++i)
+      each_beside(band.point(piece[i]), [&](const glm::ivec3& q) {
+        if (!island || labels.get(q.x, q.y, q.z) != own) return;
+        const std::uint32_t m = band.at(q);
+        island = m != ContactBand::kNone && std::atomic_ref(anchored[m]).load(std::memory_order_relaxed) == 0;
+        if (!island || std::ranges::find(piece, m) != piece.end()) return;
+        piece.push_back(m);
+        island = piece.size() < kLeastIsland;
       });
-  std::unordered_map<std::uint32_t, std::uint32_t> size;
-  for (const std::uint32_t n : loose) ++size[pieces.root(n)];
-  std::erase_if(loose, [&](std::uint32_t n) { return size[pieces.root(n)] >= kLeastIsland; });
-  return loose;
+    if (!island)
+      for (const std::uint32_t m : piece) std::atomic_ref(anchored[m]).store(1, std::memory_order_relaxed);
+    return island;
+  };
+  Nodes found = parallel_gather<std::uint32_t>(
+      static_cast<std::int64_t>(band.nodes.size()), kNodeGrain, [&](std::int64_t begin, std::int64_t end, Nodes& part) {
+        Nodes piece;
+        glm::ivec3 row(-1);  // of the node before: its word, y, z
+        std::uint64_t other = 0;
+        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n) {
+          const glm::ivec3 p = band.point(n), own(p.x >> 6, p.y, p.z);
+          if (own != row) other = beside_other(labels, own.x, own.y, own.z);
+          row = own;
+          if ((other >> (p.x & 63) & 1u) == 0 || std::atomic_ref(anchored[n]).load(std::memory_order_relaxed) != 0)
+            continue;
+          if (is_island(n, piece)) part.insert(part.end(), piece.begin(), piece.end());
+        }
+      });
+  sort_unique(found);
+  return found;
 }
 
 /// Runs of clay along x in one row, without those of the band.
@@ -164,7 +175,7 @@ EnvelopeBits ClayBeyond::labels(const std::vector<ClaySide>& side) const {
     for (std::int64_t y = 0; y < d.y; ++y)
       for (std::uint32_t i = first_[row(y, z)]; i < first_[row(y, z) + 1]; ++i)
         if (envelope[runs_[i].piece] > 0) labels.set_run(runs_[i].begin, runs_[i].end, y, z);
-  for (const std::uint32_t n : find_islands(inside_, band_, side, labels)) {
+  for (const std::uint32_t n : find_islands(band_, PointLabels(inside_, labels))) {
     const glm::ivec3 p = band_.point(n);
     labels.set(p.x, p.y, p.z, side[n] == ClaySide::kTablet);
   }
