@@ -89,7 +89,7 @@ double bytes_to_separate(const RunShape& r) { return 5.5 * sign_bytes(r) + 137.0
 double bytes_to_close(const RunShape& r) {
   return 87.0 * r.vertices + (!r.contact ? 1100.0 : r.half ? 7700.0 : 4000.0) * patch_count(r);
 }
-double seconds_to_close(const RunShape& r) { return (r.contact ? 4.7e-6 : 1.2e-6) * r.vertices; }
+double seconds_to_close(const RunShape& r) { return (r.contact ? 3.0e-6 : 1.2e-6) * r.vertices; }
 
 double seconds_to_light(const RunShape& r) {
   return r.vertices * (0.5e-6 + 75e-9 * r.rays / sharers_of_rays(r.half, r.vertices));
@@ -126,7 +126,7 @@ constexpr std::array<StagePlan, kStages> kRunPlan = {{
     {RunStage::kParts, "while parts are separated", kSurfaceSoFar, kNothing | Value::kParts, true, 0.15, always,
      bytes_to_separate, a_vertex<2000>, {{{"segment", 0.5}, {"fill holes", 0.5}}}},
     {RunStage::kContact, "while the contact is traced", kModel | Value::kScan | Value::kStraight,
-     kNothing | Value::kParts, true, 0.24, [](const RunShape& r) { return r.fill_holes; },
+     kNothing | Value::kParts, true, 0.15, [](const RunShape& r) { return r.fill_holes; },
      bytes_to_close, seconds_to_close, {{{"contact", 1.0}}}},
     {RunStage::kLight, "while light is worked out", kModel, kNothing | Value::kAttributes, true, 0.05,
      [](const RunShape& r) { return r.rays > 0.0; }, bytes_a_vertex<130>, seconds_to_light,
