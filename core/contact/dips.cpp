@@ -243,13 +243,6 @@ std::vector<BrickPlace> bricks_around(const ContactBand& band, std::int64_t arou
 
 }  // namespace
 
-bool BandDensity::covers(const ContactBand& band) const {
-  const std::vector<BrickPlace> places = bricks_around(band, 1);
-  return raw_.dims() == band.node_at.dims() && std::all_of(places.begin(), places.end(), [&](const BrickPlace& b) {
-           return raw_.has_brick(b[0], b[1], b[2]);
-         });
-}
-
 Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& source, Progress& progress, int around) {
   BandDensity density;
   DUBSAR_TRY(density.follow(band, source, progress, {around, around}));

@@ -28,8 +28,6 @@ class BandDensity {
   Result<void> follow(const ContactBand& band, SlabSource& source, Progress& progress, Room room);
   /// Makes get() and brick() of all that raw() has.
   void low_pass();
-  /// Is all there that read() would have read for that band of the same grid?
-  bool covers(const ContactBand& band) const;
   /// Low-passed by [1 2 1]/4 per axis; 0 before low_pass().
   float get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return smooth_.get(x, y, z); }
   /// The values of a brick as get() has them (BrickMap::brick()).

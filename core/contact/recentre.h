@@ -16,7 +16,7 @@ namespace dubsar {
 
 struct Recentred {
   float longest = 0.0f;  ///< way of a sample, grid steps
-  BandDensity density;   ///< raw, of the samples' grid: it may be enough for where they are now
+  BandDensity density;   ///< raw, of the samples' grid: much or all of what is needed where they are now
 };
 
 /// Moves samples of the patches along their normals to the ground of the contact, from which wedges go down: the clay

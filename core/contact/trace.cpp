@@ -81,16 +81,6 @@ Result<void> lay(SurfaceModel& model, const DividedClay& clay, const ContactShee
   return {};
 }
 
-/// What is `known` of the density, where that is enough.
-Result<BandDensity> density_of(const ContactBand& band, BandDensity known, SlabSource& density, Progress& progress) {
-  if (!known.covers(band)) {
-    known = {};
-    return BandDensity::read(band, density, progress);
-  }
-  known.low_pass();
-  return known;
-}
-
 }  // namespace
 
 Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, const ContactOptions& options,
@@ -110,7 +100,9 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(Recentred recentred, recentre(samples, model.samples.signs, density, progress, options.rules));
   log_debug("contact: looked for up to {:.1f} steps from the smooth patch", recentred.longest);
   DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
-  DUBSAR_ASSIGN(BandDensity values, density_of(band, std::move(recentred.density), density, progress));
+  BandDensity values = std::move(recentred.density);
+  DUBSAR_TRY(values.follow(band, density, progress, {}));
+  values.low_pass();
   std::optional<ClayContrast> clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
   if (clays && std::abs(clays->step()) < options.least_clay_step) clays.reset();
   if (!clays) band.trim_envelope(options.out_reach);

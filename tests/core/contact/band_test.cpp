@@ -54,9 +54,7 @@ TEST(BandDensity, KeptWithRoomIsWhatWouldBeReadForABandThatHasMoved) {
   VolumeSource source(volume);
   SilentProgress progress;
   const ContactBand before = flat_band(3.0f), after = flat_band(3.0f, kPlane + 7.0f);
-  EXPECT_FALSE(BandDensity::read(before, source, progress).value().covers(after));
   const BandDensity kept = BandDensity::read(before, source, progress, 2).value();
-  ASSERT_TRUE(kept.covers(after));
   const BandDensity read = BandDensity::read(after, source, progress).value();
   constexpr int kLooks = 6;  // as far as dips look from a node
   for (const ContactBand::Node& node : after.nodes)
@@ -83,7 +81,6 @@ TEST(BandDensity, KeptFromBandToBandIsWhatIsReadAnew) {
     source.slices = 0;
     ASSERT_TRUE(kept.follow(band, source, progress, {1, 1}).has_value());
     EXPECT_EQ(source.slices, look.slices) << look.plane;
-    ASSERT_TRUE(kept.covers(band));
     BandDensity here = kept;
     here.low_pass();
     const BandDensity anew = BandDensity::read(band, whole, progress).value();
