@@ -126,7 +126,7 @@ constexpr std::array<StagePlan, kStages> kRunPlan = {{
     {RunStage::kParts, "while parts are separated", kSurfaceSoFar, kNothing | Value::kParts, true, 0.15, always,
      bytes_to_separate, a_vertex<2000>, {{{"segment", 0.5}, {"fill holes", 0.5}}}},
     {RunStage::kContact, "while the contact is traced", kModel | Value::kScan | Value::kStraight,
-     kNothing | Value::kParts, true, 0.15, [](const RunShape& r) { return r.fill_holes; },
+     kNothing | Value::kParts, true, 0.24, [](const RunShape& r) { return r.fill_holes; },
      bytes_to_close, seconds_to_close, {{{"contact", 1.0}}}},
     {RunStage::kLight, "while light is worked out", kModel, kNothing | Value::kAttributes, true, 0.05,
      [](const RunShape& r) { return r.rays > 0.0; }, bytes_a_vertex<130>, seconds_to_light,
