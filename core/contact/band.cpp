@@ -65,19 +65,21 @@ glm::vec3 middle_of(const std::vector<PatchPoint>& samples) {
   return samples.empty() ? glm::vec3(0.0f) : 0.5f * (least + most);
 }
 
-std::vector<PatchPoint> thinned(const std::vector<PatchPoint>& samples, float side) {
-  const glm::vec3 middle = middle_of(samples);
+SampleCubes::SampleCubes(const std::vector<PatchPoint>& samples, float edge) : side(edge), middle(middle_of(samples)) {
   glm::vec3 half(0.0f);
   for (const PatchPoint& sample : samples) half = glm::max(half, glm::abs(sample.position - middle));
-  const glm::ivec3 first(glm::ceil(half / side));
-  const auto in_cubes = [&](std::uint32_t i) { return (samples[i].position - middle) / side; };
-  BrickMap<std::uint32_t> nearest({2 * first.x + 1, 2 * first.y + 1, 2 * first.z + 1}, ContactBand::kNone);
+  middle_cube = glm::ivec3(glm::ceil(half / side));
+}
+
+std::vector<PatchPoint> thinned(const std::vector<PatchPoint>& samples, float side) {
+  const SampleCubes cubes(samples, side);
+  BrickMap<std::uint32_t> nearest(cubes.dims(), ContactBand::kNone);
   const auto nearest_of = [&](std::uint32_t i) -> std::uint32_t& {
-    const glm::ivec3 cube = first + glm::ivec3(glm::round(in_cubes(i)));
+    const glm::ivec3 cube = cubes.cube(samples[i]);
     return nearest.at(cube.x, cube.y, cube.z);
   };
   const auto square_off = [&](std::uint32_t i) {
-    const glm::vec3 off = in_cubes(i) - glm::round(in_cubes(i));
+    const glm::vec3 place = cubes.place(samples[i]), off = place - glm::round(place);
     return glm::dot(off, off);
   };
   constexpr float kSame = 1e-3f;  // of two as near it is not rounding that chooses

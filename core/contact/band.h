@@ -3,6 +3,7 @@
 // patch, each with its height over it.
 
 #include <cstdint>
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -44,6 +45,19 @@ std::vector<PatchPoint> thinned(const std::vector<PatchPoint>& samples, float si
 /// Middle of the box around all samples. Statistics over pieces of the contact count the pieces from here: they are the
 /// same wherever the object lies on the grid, and mirrored where it is.
 glm::vec3 middle_of(const std::vector<PatchPoint>& samples);
+
+/// Cubes around the middle of all samples, each of them in one.
+struct SampleCubes {
+  float side;  ///< grid steps
+  glm::vec3 middle{0.0f};
+  glm::ivec3 middle_cube{0};
+
+  SampleCubes(const std::vector<PatchPoint>& samples, float edge);
+  Dims dims() const { return {2 * middle_cube.x + 1, 2 * middle_cube.y + 1, 2 * middle_cube.z + 1}; }
+  /// From the middle of all, in cubes.
+  glm::vec3 place(const PatchPoint& sample) const { return (sample.position - middle) / side; }
+  glm::ivec3 cube(const PatchPoint& sample) const { return middle_cube + glm::ivec3(glm::round(place(sample))); }
+};
 
 struct ContactBand {
   static constexpr std::uint32_t kNone = 0xffffffffu;

@@ -265,22 +265,17 @@ std::vector<std::uint32_t> move_along_normals(std::vector<PatchPoint>& samples, 
 std::vector<std::uint32_t> around(const std::vector<std::uint32_t>& far, const std::vector<PatchPoint>& samples,
                                   float side) {
   constexpr int kAround = 3;
-  const glm::vec3 middle = middle_of(samples);
-  glm::vec3 half(0.0f);
-  for (const PatchPoint& sample : samples) half = glm::max(half, glm::abs(sample.position - middle));
-  const glm::ivec3 middle_cube(glm::ceil(half / side));
-  const auto cube_of = [&](std::uint32_t i) {
-    return middle_cube + glm::ivec3(glm::round((samples[i].position - middle) / side));
-  };
-  BitVolume cubes({2 * middle_cube.x + 1, 2 * middle_cube.y + 1, 2 * middle_cube.z + 1});
+  if (far.empty()) return {};
+  const SampleCubes cubes(samples, side);
+  BitVolume with_far(cubes.dims());
   for (const std::uint32_t i : far) {
-    const glm::ivec3 c = cube_of(i);
-    cubes.set(c.x, c.y, c.z, true);
+    const glm::ivec3 c = cubes.cube(samples[i]);
+    with_far.set(c.x, c.y, c.z, true);
   }
-  const BitVolume near = dilate(cubes, kAround);
+  const BitVolume near = dilate(with_far, kAround);
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < samples.size(); ++i)
-    if (const glm::ivec3 c = cube_of(i); near.get(c.x, c.y, c.z)) found.push_back(i);
+    if (const glm::ivec3 c = cubes.cube(samples[i]); near.get(c.x, c.y, c.z)) found.push_back(i);
   return found;
 }
 
