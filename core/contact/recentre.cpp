@@ -292,6 +292,7 @@ Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, Co
   std::iota(asked.begin(), asked.end(), 0u);
   for (int k = 0; k < most_looks && !asked.empty(); ++k) {
     std::vector<PatchPoint> from;
+    from.reserve(asked.size());
     for (const std::uint32_t i : asked) from.push_back(samples[i]);
     DUBSAR_ASSIGN(std::vector<float> ways, look(std::move(from)));
     for (float& way : ways) way *= scale;
