@@ -21,15 +21,17 @@ namespace {
 
 constexpr float kReach = 12.0f;    ///< on both sides of the patch, grid steps
 constexpr float kCubeSide = 8.0f;  ///< of the places whose heights are taken together: wider than a wedge
-constexpr float kThinned = 1.0f;   ///< cubes of which one sample is looked from, grid steps
+constexpr float kThinned = 1.0f;   ///< cubes of which one sample is looked from at half of the resolution, its steps
 constexpr std::size_t kLeastCrossings = 24;
 constexpr float kAcross = 0.6f;  ///< cosine from which on a face lies along the contact
 /// Quantiles of heights whose mean is the ground: below lie wedges, above what noise lifted.
 constexpr float kGroundFrom = 0.5f, kGroundTo = 0.85f;
 constexpr float kAverage = 10.0f;  ///< deviation of the average over cubes, grid steps
 /// Mean strength of dips above that of mere clay from which a cube begins to be believed, and is believed in full.
-constexpr float kLeastBelief = 0.8f, kFullBelief = 1.1f;
-constexpr float kAirBelief = 2.0f;       ///< the same of air between tablet and envelope
+constexpr float kLeastBelief = 0.7f, kFullBelief = 1.0f;
+constexpr float kAirBelief = 2.0f;  ///< the same of air between tablet and envelope
+/// Faces that show nothing and are added to those around a place: a few cubes alone are chance.
+constexpr float kDoubt = kCubeSide * kCubeSide;
 constexpr float kUnknownWeight = 0.25f;  ///< weight of cubes that show no film: there the patch is right
 
 glm::vec3 halved(const glm::vec3& p) { return 0.5f * (p - 1.0f); }  // resample.h
@@ -133,12 +135,12 @@ std::vector<Ground> grounds_of(const ContactBand& band, const BitVolume& inside,
         {glm::vec3(cube.middle / count), ground, static_cast<float>(cube.strength / count), static_cast<float>(faces)});
   }
   for (Ground& ground : found) {
-    float sum = 0.0f, weights = 0.0f;
+    float sum = 0.0f, weights = kDoubt;
     each_near(found, ground.middle, [&](const Ground& other, float weight) {
-      sum += weight * other.strength;
+      sum += weight * (other.strength - dips.plain.strength);
       weights += weight;
     });
-    const float above = sum / weights - dips.plain.strength;
+    const float above = sum / weights;
     ground.belief = std::clamp((above - kLeastBelief) / (kFullBelief - kLeastBelief), 0.0f, 1.0f);
   }
   return found;
@@ -226,11 +228,12 @@ class HeightField {
 /// there as well.
 constexpr BandDensity::Room kKeptRoom{2, 3}, kKeptRoomAtHalf{1, 3};
 
-/// The way of each sample along its normal, grid steps. `values`: what is kept of `density` between looks.
-Result<std::vector<float>> ways_to_films(const std::vector<PatchPoint>& samples, const BitVolume& inside,
-                                         SlabSource& density, BandDensity& values, BandDensity::Room kept,
-                                         Progress& progress) {
-  DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, thinned(samples, kThinned), kReach, progress));
+/// The way of each sample along its normal, grid steps. `looked_from`: those whose surroundings are looked at.
+/// `values`: what is kept of `density` between looks.
+Result<std::vector<float>> ways_to_films(const std::vector<PatchPoint>& samples, std::vector<PatchPoint> looked_from,
+                                         const BitVolume& inside, SlabSource& density, BandDensity& values,
+                                         BandDensity::Room kept, Progress& progress) {
+  DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, std::move(looked_from), kReach, progress));
   DUBSAR_TRY(values.follow(band, density, progress, kept));
   DUBSAR_ASSIGN(const Dips dips, find_dips(band, inside, values, progress));
   DUBSAR_ASSIGN(const std::vector<ClaySide> side, ClayDivision({band, dips, {}, {}, {}}).sides(progress));
@@ -311,7 +314,7 @@ Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVo
                                    Progress& progress, ContactRules rules) {
   BandDensity values;
   DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 1.0f, rules, [&](const std::vector<PatchPoint>& from) {
-                  return ways_to_films(from, inside, density, values, kKeptRoom, progress);
+                  return ways_to_films(from, from, inside, density, values, kKeptRoom, progress);
                 }));
   recentred.density = std::move(values);
   return recentred;
@@ -324,7 +327,7 @@ Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, con
   BandDensity values;
   return follow_films(samples, 2.0f, rules, [&](std::vector<PatchPoint> from) {
     for (PatchPoint& sample : from) sample.position = halved(sample.position);
-    return ways_to_films(from, inside_half, half, values, kKeptRoomAtHalf, progress);
+    return ways_to_films(from, thinned(from, kThinned), inside_half, half, values, kKeptRoomAtHalf, progress);
   });
 }
 
