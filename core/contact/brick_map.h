@@ -40,6 +40,8 @@ class BrickMap {
     }
     return values_[place + inside(x, y, z)];
   }
+  /// Bricks that are there.
+  std::size_t made() const noexcept { return values_.size() / (kEdge * kEdge * kEdge); }
   /// Room for so many bricks: none of those that are made then moves another.
   void reserve(std::size_t bricks) {
     values_.reserve(bricks * kEdge * kEdge * kEdge);

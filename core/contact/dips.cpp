@@ -246,7 +246,7 @@ std::vector<BrickPlace> bricks_around(const ContactBand& band, std::int64_t arou
 Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& source, Progress& progress, int around) {
   BandDensity density;
   DUBSAR_TRY(density.follow(band, source, progress, {around, around}));
-  density.low_pass();
+  density.low_pass(band, around);
   return density;
 }
 
@@ -259,29 +259,21 @@ Result<void> BandDensity::follow(const ContactBand& band, SlabSource& source, Pr
   for (const BrickPlace& b : bricks_around(band, room.least))
     if (!is_there(b)) is_read[static_cast<std::size_t>(b[2])] = true;
   if (std::ranges::count(is_read, true) == 0) return {};
-  smooth_ = BrickMap<float>({}, 0.0f);
   std::vector<BrickPlace> places = bricks_around(band, room.most);
-  std::erase_if(places, [&](const BrickPlace& b) { return !is_read[static_cast<std::size_t>(b[2])] && !is_there(b); });
-  BrickMap<float> raw(d, 0.0f);  // all bricks are there before threads write
-  raw.reserve(places.size());
-  for (const auto& [bx, by, bz] : places) raw.add_brick(bx, by, bz);
+  std::erase_if(places, [&](const BrickPlace& b) { return !is_read[static_cast<std::size_t>(b[2])] || is_there(b); });
+  raw_.reserve(raw_.made() + places.size());
   std::vector<float> slab;
   progress.begin("contact density", static_cast<std::int64_t>(places.size()), "brick");
   for (std::size_t first = 0, end = 0; first < places.size(); first = end) {
     if (progress.cancelled()) return cancelled_error();
     const std::int64_t layer = places[first][2], z0 = layer * kEdge, z1 = std::min(z0 + kEdge, d.z);
-    while (end < places.size() && places[end][2] == layer) ++end;
-    if (is_read[static_cast<std::size_t>(layer)]) {
-      slab.resize(static_cast<std::size_t>((z1 - z0) * d.slice()));
-      DUBSAR_TRY(source.read(z0, z1, slab));
-    }
+    slab.resize(static_cast<std::size_t>((z1 - z0) * d.slice()));
+    DUBSAR_TRY(source.read(z0, z1, slab));
+    for (; end < places.size() && places[end][2] == layer; ++end)  // all are there before threads write
+      raw_.add_brick(places[end][0], places[end][1], layer);
     parallel_for(static_cast<std::int64_t>(end - first), 16, [&](std::int64_t i) {
       const auto [bx, by, bz] = places[first + static_cast<std::size_t>(i)];
-      float* const brick = raw.brick(bx, by, bz);
-      if (const float* const known = std::as_const(raw_).brick(bx, by, bz)) {
-        std::copy_n(known, kEdge * kEdge * kEdge, brick);
-        return;
-      }
+      float* const brick = raw_.brick(bx, by, bz);
       const std::int64_t x = bx * kEdge, y = by * kEdge, rows = std::min(kEdge, d.y - y),
                          length = std::min(kEdge, d.x - x);
       for (std::int64_t z = z0; z < z1; ++z)
@@ -292,17 +284,12 @@ Result<void> BandDensity::follow(const ContactBand& band, SlabSource& source, Pr
     progress.advance(static_cast<std::int64_t>(end - first));
   }
   progress.end();
-  raw_ = std::move(raw);
   return {};
 }
 
-void BandDensity::low_pass() {
-  const Dims d = raw_.dims(), bricks = raw_.bricks();
-  std::vector<BrickPlace> places;
-  for (std::int64_t z = 0; z < bricks.z; ++z)
-    for (std::int64_t y = 0; y < bricks.y; ++y)
-      for (std::int64_t x = 0; x < bricks.x; ++x)
-        if (raw_.has_brick(x, y, z)) places.push_back({x, y, z});
+void BandDensity::low_pass(const ContactBand& band, int around) {
+  const Dims d = raw_.dims();
+  const std::vector<BrickPlace> places = bricks_around(band, around);
   smooth_ = BrickMap<float>(d, 0.0f);
   smooth_.reserve(places.size());
   for (const auto& [bx, by, bz] : places) smooth_.add_brick(bx, by, bz);

@@ -22,12 +22,11 @@ class BandDensity {
   struct Room {
     int least = 1, most = 1;
   };
-  /// The same for a band that has moved: what is there already and lies in that room stays, layers (of 8 slices) where
-  /// nothing is missing are not read. raw() alone, until low_pass(). Holds both, old and new, meanwhile; unchanged
-  /// after an error.
+  /// The same for a band that has moved: all that is there already stays, layers (of 8 slices) where nothing of `least`
+  /// is missing are not read. raw() alone, until low_pass(). Nothing is lost after an error.
   Result<void> follow(const ContactBand& band, SlabSource& source, Progress& progress, Room room);
-  /// Makes get() and brick() of all that raw() has.
-  void low_pass();
+  /// Makes get() and brick() of what raw() has around a band.
+  void low_pass(const ContactBand& band, int around = 1);
   /// Low-passed by [1 2 1]/4 per axis; 0 before low_pass().
   float get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return smooth_.get(x, y, z); }
   /// The values of a brick as get() has them (BrickMap::brick()).

@@ -102,7 +102,7 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   BandDensity values = std::move(recentred.density);
   DUBSAR_TRY(values.follow(band, density, progress, {}));
-  values.low_pass();
+  values.low_pass(band);
   std::optional<ClayContrast> clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
   if (clays && std::abs(clays->step()) < options.least_clay_step) clays.reset();
   if (!clays) band.trim_envelope(options.out_reach);

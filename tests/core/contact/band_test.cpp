@@ -74,15 +74,15 @@ TEST(BandDensity, KeptFromBandToBandIsWhatIsReadAnew) {
   BandDensity kept;
   struct Look {
     float plane;
-    std::int64_t slices;  ///< that it has to read: layers of 8 where nothing was
+    std::int64_t slices;  ///< that it has to read: layers of 8 where nothing was before
   };
-  for (const Look look : {Look{5.5f, 24}, Look{7.5f, 0}, Look{27.5f, 16}, Look{29.5f, 0}, Look{9.5f, 16}}) {
+  for (const Look look : {Look{5.5f, 24}, Look{7.5f, 0}, Look{27.5f, 16}, Look{29.5f, 0}, Look{9.5f, 0}}) {
     const ContactBand band = flat_band(3.0f, look.plane);
     source.slices = 0;
     ASSERT_TRUE(kept.follow(band, source, progress, {1, 1}).has_value());
     EXPECT_EQ(source.slices, look.slices) << look.plane;
     BandDensity here = kept;
-    here.low_pass();
+    here.low_pass(band);
     const BandDensity anew = BandDensity::read(band, whole, progress).value();
     constexpr int kLooks = 7;  // as far as dips look from a node
     for (const ContactBand::Node& node : band.nodes) {
