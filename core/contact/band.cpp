@@ -103,11 +103,11 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
   parallel_for(static_cast<std::int64_t>(found.size()), 1, [&](std::int64_t f) {
     if (progress.cancelled()) return;
     const auto some = static_cast<std::size_t>(f);
-    for (std::size_t b = some * kTogether; b < std::min((some + 1) * kTogether, bricks.size()); ++b)
-      nearest.each_point(bricks[b], inside, [&](const Node& node) {
-        found[some].push_back(node);
-        has_nodes[b] = 1;
-      });
+    for (std::size_t b = some * kTogether; b < std::min((some + 1) * kTogether, bricks.size()); ++b) {
+      const std::size_t before = found[some].size();
+      nearest.add_nodes(bricks[b], inside, found[some]);
+      has_nodes[b] = found[some].size() > before;
+    }
   });
   if (progress.cancelled()) return cancelled_error();
   band.node_at.reserve(static_cast<std::size_t>(std::ranges::count(has_nodes, std::uint8_t{1})));

@@ -1,14 +1,36 @@
 #include "core/contact/nearest_samples.h"
 
-#include "core/base/system/parallel_gather.h"
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/contact/kernels/nearest_places.h"
 
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kCellGrain = 1 << 12;
-constexpr int kMostLooks = 4;  ///< cells from which the nearest sample is looked for around them
-
 glm::ivec3 coarse_place(const PatchPoint& sample) { return glm::ivec3(glm::round(0.5f * sample.position)); }
+
+/// Grid points of a cube, each of them seen or not.
+class SeenPoints {
+ public:
+  SeenPoints(const glm::ivec3& first, int side)
+      : first_(first), side_(side), words_(static_cast<std::size_t>((side * side * side + 63) / 64)) {}
+  /// Was it not seen before? It is from now on.
+  bool is_new(const glm::ivec3& p) {
+    const glm::ivec3 at = p - first_;
+    const auto bit = static_cast<std::size_t>((at.z * side_ + at.y) * side_ + at.x);
+    const std::uint64_t mask = std::uint64_t{1} << bit % 64;
+    const bool seen = (words_[bit / 64] & mask) != 0;
+    words_[bit / 64] |= mask;
+    return !seen;
+  }
+
+ private:
+  glm::ivec3 first_;
+  int side_;
+  std::vector<std::uint64_t> words_;
+};
 
 }  // namespace
 
@@ -24,65 +46,32 @@ NearestSamples::NearestSamples(const std::vector<PatchPoint>& samples, const Dim
       dims_(dims),
       reach_(reach),
       known_({dims.x / 2 + 1, dims.y / 2 + 1, dims.z / 2 + 1}, kNone),
-      cell_of_(samples.size(), kNone) {
+      cell_at_(dims, kNone) {
   fill_cells();
 }
 
 void NearestSamples::fill_cells() {
-  BrickMap<std::uint32_t> cell_at(dims_, kNone);
   std::vector<std::uint32_t> last, before(samples_.size(), kNone);  // of a cell, those that it has in turn
   for (std::uint32_t s = 0; s < samples_.size(); ++s) {
     const glm::ivec3 p = point_of(s);
     if (!in_grid(p)) continue;
-    std::uint32_t& cell = cell_at.at(p.x, p.y, p.z);
+    std::uint32_t& cell = cell_at_.at(p.x, p.y, p.z);
     if (cell == kNone) {
-      cell = static_cast<std::uint32_t>(cells_.size());
-      cells_.push_back({p, 0, 0, 0, 0});
+      cell = static_cast<std::uint32_t>(last.size());
       last.push_back(kNone);
     }
-    cell_of_[s] = cell;
     std::uint32_t same = last[cell];  // triangles beside each other have the same samples on their edge
     while (same != kNone && samples_[same].position != samples_[s].position) same = before[same];
     if (same != kNone) continue;
     before[s] = last[cell];
     last[cell] = s;
-    ++cells_[cell].places;
   }
-  std::uint32_t places = 0;
-  for (Cell& cell : cells_) {
-    cell.first_place = places;
-    places += cell.places;
+  first_.reserve(last.size() + 1);
+  for (const std::uint32_t of_cell : last) {
+    first_.push_back(static_cast<std::uint32_t>(listed_.size()));
+    for (std::uint32_t s = of_cell; s != kNone; s = before[s]) listed_.push_back(s);
   }
-  places_.resize(places);
-  parallel_for(static_cast<std::int64_t>(cells_.size()), kCellGrain, [&](std::int64_t c) {
-    std::uint32_t place = cells_[static_cast<std::size_t>(c)].first_place;
-    for (std::uint32_t s = last[static_cast<std::size_t>(c)]; s != kNone; s = before[s])
-      places_[place++] = {samples_[s].position, s};
-  });
-  find_cells_beside(cell_at);
-}
-
-void NearestSamples::find_cells_beside(const BrickMap<std::uint32_t>& cell_at) {
-  const auto count = static_cast<std::int64_t>(cells_.size());
-  using Ids = std::vector<std::uint32_t>;
-  beside_ = parallel_gather<std::uint32_t>(count, kCellGrain, [&](std::int64_t begin, std::int64_t end, Ids& found) {
-    for (std::int64_t c = begin; c < end; ++c) {
-      Cell& cell = cells_[static_cast<std::size_t>(c)];
-      for (int n = 0; n < 27; ++n) {
-        const int k = (n + 13) % 27;  // itself first
-        const glm::ivec3 q = cell.point + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-        const std::uint32_t other = cell_at.get(q.x, q.y, q.z);
-        if (other == kNone) continue;
-        found.push_back(other);
-        ++cell.beside;
-      }
-    }
-  });
-  std::uint32_t first = 0;
-  for (Cell& cell : cells_) {
-    cell.first_beside = first;
-    first += cell.beside;
-  }
+  first_.push_back(static_cast<std::uint32_t>(listed_.size()));
 }
 
 std::vector<glm::ivec3> NearestSamples::bricks() const {
@@ -131,71 +120,60 @@ bool NearestSamples::run_fronts(Progress& progress) {
   return true;
 }
 
-std::uint32_t NearestSamples::nearest_of(const glm::ivec3& p, std::uint32_t guess) const {
-  const glm::ivec3 low = p / 2, high = (p + 1) / 2;
-  std::uint32_t nearest = kNone, last = kNone;
-  float least = INFINITY;
-  for (int z = low.z; z <= high.z; ++z)
-    for (int y = low.y; y <= high.y; ++y)
-      for (int x = low.x; x <= high.x; ++x) {
-        const std::uint32_t s = known_.get(x, y, z);
-        if (s == kNone || s == last) continue;
-        last = s;
-        const glm::vec3 off = glm::vec3(p) - samples_[s].position;
-        const float square = glm::dot(off, off);
-        if (square >= least) continue;
-        least = square;
-        nearest = s;
-      }
-  if (guess != kNone && nearest != kNone && least < reach_ * reach_) {
-    const glm::vec3 off = glm::vec3(p) - samples_[guess].position;
-    if (const float square = glm::dot(off, off); square < least) {
-      least = square;
-      nearest = guess;
-    }
-  }
-  constexpr float kFar = 3.0f;  ///< no sample beside it is nearer by as much
-  if (nearest != kNone && least < (reach_ + kFar) * (reach_ + kFar)) look_around(p, nearest, least);
-  return nearest;
+void NearestSamples::add(std::uint32_t s, Nearby& near) const {
+  const glm::vec3& p = samples_[s].position;
+  near.x.push_back(p.x);
+  near.y.push_back(p.y);
+  near.z.push_back(p.z);
+  near.sample.push_back(s);
 }
 
-/// Goes on to the nearest of the samples around `nearest`, at the square of a distance `least`. One beyond the grid has
-/// none around it.
-void NearestSamples::look_around(const glm::ivec3& p, std::uint32_t& nearest, float& least) const {
-  glm::ivec3 middle(-kMostLooks);  // of the look before
-  std::uint32_t seen = 0;          // bits of cells around it whose samples were looked at
-  for (int look = 0; look < kMostLooks; ++look) {
-    const std::uint32_t before = nearest, own = cell_of_[before];
-    if (own == kNone) return;
-    // Beside the foot of the point on the patch, by no more than what is known lies, and half a diagonal of a cell.
-    const glm::vec3 normal = samples_[before].normal, off = glm::vec3(p) - samples_[before].position;
-    const float height = glm::dot(off, normal), aside = std::sqrt(std::max(least - height * height, 0.0f)) + 0.87f;
-    const glm::ivec3 from = cells_[own].point - 1 - middle;
-    std::uint32_t now = 0;
-    const std::uint32_t* const first = beside_.data() + cells_[own].first_beside;
-    for (const std::uint32_t* beside = first; beside != first + cells_[own].beside; ++beside) {
-      const Cell& cell = cells_[*beside];
-      const glm::vec3 way(cell.point - p);
-      const float up = glm::dot(way, normal);
-      if (glm::dot(way, way) - up * up > aside * aside) continue;
-      const glm::ivec3 at = cell.point - cells_[own].point + 1, then = from + at + 1;
-      now |= 1u << ((at.z * 3 + at.y) * 3 + at.x);
-      const auto around = [](int along) { return static_cast<unsigned>(along) < 3; };
-      if (around(then.x) && around(then.y) && around(then.z) && seen >> ((then.z * 3 + then.y) * 3 + then.x) & 1u)
-        continue;
-      const Place* const places = places_.data() + cell.first_place;
-      for (const Place* place = places; place != places + cell.places; ++place) {
-        const glm::vec3 to = glm::vec3(p) - place->position;
-        const float square = glm::dot(to, to);
-        if (square >= least) continue;
-        least = square;
-        nearest = place->sample;
+NearestSamples::Nearby NearestSamples::nearby(const glm::ivec3& corner) const {
+  const int around = static_cast<int>(std::ceil(reach_)) + 4;  // as far as run_fronts() goes, and a cell beside that
+  SeenPoints middles(corner - around, static_cast<int>(kEdge) + 1 + 2 * around), seen = middles;
+  Nearby near;
+  const glm::ivec3 first = corner / 2, last = (corner + static_cast<int>(kEdge)) / 2;
+  for (int z = first.z; z <= last.z; ++z)
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) {
+        const std::uint32_t s = known_.get(x, y, z);
+        if (s == kNone) continue;
+        const glm::ivec3 p = point_of(s);
+        if (!middles.is_new(p)) continue;
+        if (!in_grid(p)) add(s, near);
+        for (int k = 0; k < 125; ++k) {
+          const glm::ivec3 q = p + glm::ivec3(k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2);
+          if (!seen.is_new(q)) continue;
+          const std::uint32_t cell = cell_at_.get(q.x, q.y, q.z);
+          if (cell == kNone) continue;
+          for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) add(listed_[i], near);
+        }
       }
-    }
-    if (nearest == before || cell_of_[nearest] == own) break;
-    middle = cells_[own].point;
-    seen = now;
-  }
+  return near;
+}
+
+void NearestSamples::add_nodes(const glm::ivec3& brick, const BitVolume& inside,
+                               std::vector<ContactBand::Node>& nodes) const {
+  static_assert(kEdge == kNearestEdge);
+  constexpr int kPoints = static_cast<int>(kEdge);
+  const glm::ivec3 corner = brick * kPoints;
+  const Nearby near = nearby(corner);
+  if (near.sample.empty()) return;
+  std::array<std::int32_t, kEdge * kEdge * kEdge> nearest;
+  nearest_places({near.x, near.y, near.z}, corner, nearest);
+  const glm::ivec3 from = glm::max(corner, 1),
+                   to = glm::min(corner + kPoints, glm::ivec3(dims_.x, dims_.y, dims_.z) - 1);
+  for (std::int32_t z = from.z; z < to.z; ++z)
+    for (std::int32_t y = from.y; y < to.y; ++y)
+      for (std::int32_t x = from.x; x < to.x; ++x) {
+        if (!inside.get(x, y, z)) continue;
+        const glm::ivec3 at = glm::ivec3(x, y, z) - corner;
+        const std::int32_t k = nearest[static_cast<std::size_t>((at.z * kPoints + at.y) * kPoints + at.x)];
+        const std::uint32_t s = near.sample[static_cast<std::size_t>(k)];
+        const glm::vec3 off = glm::vec3(x, y, z) - samples_[s].position;
+        const float distance = glm::length(off);
+        if (distance <= reach_) nodes.push_back({x, y, z, s, glm::dot(off, samples_[s].normal), distance});
+      }
 }
 
 }  // namespace dubsar

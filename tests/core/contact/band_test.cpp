@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <random>
 
 #include "core/contact/dips.h"
 #include "tests/core/contact/counted_source.h"
@@ -45,6 +47,63 @@ TEST(ContactBand, TrimmedReachesLessIntoTheEnvelopeAlone) {
   EXPECT_LT(expected, whole.nodes.size());
   EXPECT_EQ(band.reach_at(-1.0f), 10.0f);
   EXPECT_EQ(band.reach_at(1.0f), 6.0f);
+}
+
+/// Samples of a sheet that bends both ways, about a step apart, and a few by themselves.
+std::vector<PatchPoint> wavy_samples(std::uint32_t seed, std::int64_t edge) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> share(0.0f, 1.0f);
+  const float phase = 6.0f * share(random), rise = 3.0f + 4.0f * share(random);
+  const auto end = static_cast<float>(edge);
+  std::vector<PatchPoint> samples;
+  for (float y = 9.0f; y < end - 9.0f; y += 0.9f)
+    for (float x = 9.0f; x < end - 9.0f; x += 0.9f) {
+      const float sx = 0.13f * x + phase, sy = 0.11f * y;
+      const glm::vec3 at(x + 0.4f * share(random), y + 0.4f * share(random),
+                         0.5f * end + rise * std::sin(sx) * std::cos(sy));
+      const glm::vec3 normal(-0.13f * rise * std::cos(sx) * std::cos(sy), 0.11f * rise * std::sin(sx) * std::sin(sy),
+                             1.0f);
+      samples.push_back({at, glm::normalize(normal)});
+    }
+  for (int k = 0; k < 5; ++k)
+    samples.push_back({end * glm::vec3(share(random), share(random), share(random)), {1.0f, 0.0f, 0.0f}});
+  return samples;
+}
+
+TEST(ContactBand, NodesAreAllPointsOfClayInReachOfASampleAndKnowTheNearest) {
+  constexpr std::int64_t kWide = 61;
+  for (const std::uint32_t seed : {3u, 4u, 5u, 6u}) {
+    const std::vector<PatchPoint> samples = wavy_samples(seed, kWide);
+    BitVolume inside(Dims{kWide, kWide, kWide});
+    for (int z = 0; z < kWide; ++z)
+      for (int y = 0; y < kWide; ++y)
+        for (int x = 0; x < kWide; ++x) inside.set(x, y, z, (x * 7 + y * 5 + z * 3) % 11 != 0);
+    const float reach = 5.0f + 2.3f * static_cast<float>(seed - 3);
+    SilentProgress progress;
+    const ContactBand band = ContactBand::make(inside, samples, reach, progress).value();
+    std::size_t expected = 0, farther = 0, left_out = 0;
+    for (int z = 1; z < kWide - 1; ++z)
+      for (int y = 1; y < kWide - 1; ++y)
+        for (int x = 1; x < kWide - 1; ++x) {
+          float least = INFINITY;
+          for (const PatchPoint& s : samples) least = std::min(least, glm::distance(glm::vec3(x, y, z), s.position));
+          const std::uint32_t n = band.at({x, y, z});
+          if (n == ContactBand::kNone) {
+            left_out += inside.get(x, y, z) && least <= reach - 1e-3f;
+            continue;
+          }
+          ++expected;
+          const ContactBand::Node& node = band.nodes[n];
+          const glm::vec3 off = glm::vec3(x, y, z) - samples[node.sample].position;
+          ASSERT_NEAR(node.distance, glm::length(off), 1e-4f);
+          ASSERT_NEAR(node.height, glm::dot(off, samples[node.sample].normal), 1e-4f);
+          ASSERT_LE(node.distance, reach);
+          ASSERT_LT(node.distance, least + 0.3f);
+          farther += node.distance > least + 1e-4f;
+        }
+    EXPECT_EQ(band.nodes.size(), expected);
+    EXPECT_LT(static_cast<double>(farther + left_out), 1e-3 * static_cast<double>(expected)) << seed;
+  }
 }
 
 TEST(BandDensity, KeptWithRoomIsWhatWouldBeReadForABandThatHasMoved) {
