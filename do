@@ -26,7 +26,7 @@ usage() {
   cat <<'TEXT'
 ./do demo     install what is needed, build, make a scan, process it, write surfaces and pictures
 ./do test     install what is needed, build, run all tests but the long ones
-./do long     those that take a minute each: whole scans of other seeds and sizes; long turn: the quarter that CI takes at this revision
+./do long     those that take a minute each: whole scans of other seeds and sizes; long turn: the eighth that CI takes at this revision
 ./do lab      boot Debian's kernel in qemu and test the drivers on virtual USB, HID and camera devices
 ./do build    build the program (build/release/app/dubsar)
 ./do peers    talk to VRPN, spacenavd, libspnav and opentrack, as far as they are installed, and print a table
@@ -51,8 +51,8 @@ usage() {
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
 ./do asan     the tests under AddressSanitizer and UndefinedBehaviorSanitizer, windows and pictures too; asan core devices
-              input display app program core/exa: of these only (program: what runs dubsar itself); asan turn: the part that CI
-              takes at this revision; and what ctest takes, as asan devices -R Vrpn
+              input display app program core/exa app/kiosk: of these only (program: what runs dubsar itself); asan turn: the part that
+              CI takes at this revision; and what ctest takes, as asan devices -R Vrpn
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
 ./do core     build and test the core alone, no graphics, no devices: build/core/app/dubsar has process, info, exa, phantom
 ./do lint     is every source formatted, and clang-tidy over what changed since the last commit (or since REVISION)
@@ -112,11 +112,11 @@ run_tests() {
   ctest --test-dir "$build" --output-on-failure -j $((jobs + 1)) -LE '^long$' "$@"  # some wait, for clocks or for other programs
 }
 
-# Every case of the label long, or every fourth of them, another quarter at each revision.
+# Every case of the label long, or every eighth of them, others at each revision.
 long() {
   local every=()
   if [ "${1:-}" = turn ]; then
-    every=(-I "$(($(revision_number) % 4 + 1)),,4")
+    every=(-I "$(($(revision_number) % 8 + 1)),,8")
     shift
   fi
   deps
@@ -131,19 +131,30 @@ lab() {
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
-# What the sanitized suite is made of: folders of tests/ and of tests/core/, those of app/ that run the program apart; of app every second
-# case at a time. CI takes one line a revision, as each takes two cores about a quarter of an hour from nothing.
+# What the sanitized suite is made of: folders of tests/, of tests/core/ and of tests/app/, and what runs the program. CI takes one line a
+# revision: each builds what its own cases need, and those of a large folder take turns, every fourth case at a time.
 sanitized_parts=(
   "core/base core/image_io core/hdf5 core/mesh"
-  "core/volume core/filter core/phantom"
-  "core/extract core/relief core/refine core/rays core/parts core/contact core/script core/edition core/seals core/compare"
-  "core/exa core/mesh_io core/pipeline"
-  "devices input"
-  "display"
-  "app -I 1,,2"
-  "app -I 2,,2"
-  "program -I 1,,2"
-  "program -I 2,,2"
+  "core/volume core/filter"
+  "core/phantom core/relief core/refine"
+  "core/extract core/rays core/parts core/compare"
+  "core/contact"
+  "core/script core/edition core/seals"
+  "core/exa core/mesh_io"
+  "core/pipeline"
+  "devices"
+  "input"
+  "display -I 1,,2"
+  "display -I 2,,2"
+  "app/commands app/session app/cli app/slices app/additions"
+  "app/kiosk"
+  "app/panels app/words app/monitor app/calibration app/publish"
+  "app/viewer -I 1,,2"
+  "app/viewer -I 2,,2"
+  "program -I 1,,4"
+  "program -I 2,,4"
+  "program -I 3,,4"
+  "program -I 4,,4"
 )
 
 # One more at each revision; made of the revision's name where the checkout does not know how many came before.
@@ -162,7 +173,7 @@ part_of_revision() {
 # The cases of `test`, less those that need a kernel of their own, a preloaded library or most of an hour. asan ROOM...: of these parts only,
 # asan turn: of the one whose turn it is; words for ctest may follow, as `-R Leap`.
 asan() {
-  local rooms=() room labels
+  local rooms=() room folder labels
   if [ "${1:-}" = turn ]; then
     room=$(part_of_revision)
     set -- $room "${@:2}"
@@ -170,7 +181,7 @@ asan() {
   fi
   deps
   preset=asan build=build/asan
-  while [[ "${1:-}" =~ ^(core(/[a-z0-9_]+)?|devices|input|display|app|program)$ ]]; do
+  while [[ "${1:-}" =~ ^((core|app)(/[a-z0-9_]+)?|devices|input|display|program)$ ]]; do
     rooms+=("$1")
     shift
   done
@@ -184,12 +195,13 @@ asan() {
   export ASAN_OPTIONS="strict_string_checks=1:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
   export LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_others.txt:print_suppressions=0:${LSAN_OPTIONS:-}"
   for room in "${rooms[@]}"; do
+    labels=(-L '^(unit|gl|replay)$')
+    folder=$room
     case "$room" in
-      program) labels='^app$' ;;
-      app) labels='^(unit|gl|replay)$' ;;
-      *) labels='^(unit|gl|replay|app)$' ;;
+      program) labels=(-L '^app$') folder=app ;;
+      app/*) labels+=(-L "^$room$") folder=app ;;
     esac
-    ctest --test-dir "$build/tests/${room/#program/app}" --output-on-failure -j $((jobs + 1)) -L "$labels" "$@"
+    ctest --test-dir "$build/tests/$folder" --output-on-failure -j $((jobs + 1)) "${labels[@]}" "$@"
   done
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/system/second.h"
 #include "devices/driver.h"
 #include "devices/head_tracker/imu_sim.h"
 #include "devices/head_tracker/opentrack_protocol.h"
@@ -15,7 +16,6 @@
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
 double angle_between(const glm::dquat& a, const glm::dquat& b) {
@@ -124,13 +124,13 @@ TEST(Opentrack, ReadsTheFirst48BytesOfLongerDatagramsAndRefusesShorterOnesAndVal
 TEST(HeadGate, AJumpIsFollowedAtFiveMetresPerSecond) {
   HeadGate gate;
   gate.pass({0, {{0, 0, 0.6}, {1, 0, 0, 0}}, true, true});
-  const auto jumped = gate.pass({kSecond / 100, {{1.0, 0, 0.6}, {1, 0, 0, 0}}, true, true});
+  const auto jumped = gate.pass({kSecondNs / 100, {{1.0, 0, 0.6}, {1, 0, 0, 0}}, true, true});
   ASSERT_TRUE(jumped);
   EXPECT_NEAR(jumped->pose.position_m.x, 0.05, 1e-12);
-  const auto later = gate.pass({kSecond, {{1.0, 0, 0.6}, {1, 0, 0, 0}}, true, true});
+  const auto later = gate.pass({kSecondNs, {{1.0, 0, 0.6}, {1, 0, 0, 0}}, true, true});
   EXPECT_NEAR(later->pose.position_m.x, 1.0, 1e-12);  // after a gap the new place is believed
-  EXPECT_FALSE(gate.pass({kSecond, {{2.1, 0, 0}, {1, 0, 0, 0}}, true, true}));
-  EXPECT_FALSE(gate.pass({kSecond, {{0, 0, 0}, {0.5, 0, 0, 0}}, true, true}));
+  EXPECT_FALSE(gate.pass({kSecondNs, {{2.1, 0, 0}, {1, 0, 0, 0}}, true, true}));
+  EXPECT_FALSE(gate.pass({kSecondNs, {{0, 0, 0}, {0.5, 0, 0, 0}}, true, true}));
 }
 
 TEST(Rift, PackedVectorsAreThreeSigned21BitNumbersBigEndian) {
@@ -234,23 +234,23 @@ TEST(ImuFusion, ABiasIsLearntAtRestAndTakenOffAndAHeadThatTurnsTeachesNone) {
 
 TEST(DeviceTimeline, AReportThatWasHeldUpHasTheTimeOfItsMeasurement) {
   DeviceTimeline timeline;
-  constexpr TimestampNs kMs = 1'000'000, kOrigin = 77 * kSecond;  // of the device's clock
+  constexpr TimestampNs kMs = 1'000'000, kOrigin = 77 * kSecondNs;  // of the device's clock
   for (int i = 0; i < 100; ++i)
     EXPECT_LE(std::abs(timeline.host_time(i * 10 * kMs + kOrigin, i * 10 * kMs + 2 * kMs) - (i * 10 * kMs + 2 * kMs)),
               1000);
   // 40 ms late
-  EXPECT_LE(std::abs(timeline.host_time(kSecond + kOrigin, kSecond + 42 * kMs) - (kSecond + 2 * kMs)), kMs / 5);
+  EXPECT_LE(std::abs(timeline.host_time(kSecondNs + kOrigin, kSecondNs + 42 * kMs) - (kSecondNs + 2 * kMs)), kMs / 5);
   // never in the future
-  EXPECT_EQ(timeline.host_time(2 * kSecond + kOrigin, 2 * kSecond + kMs), 2 * kSecond + kMs);
+  EXPECT_EQ(timeline.host_time(2 * kSecondNs + kOrigin, 2 * kSecondNs + kMs), 2 * kSecondNs + kMs);
   // a clock that runs 50 us/s fast is followed
   TimestampNs worst = 0;
   for (int i = 0; i < 100; ++i) {
-    const TimestampNs arrived = (3 + i) * kSecond;
+    const TimestampNs arrived = (3 + i) * kSecondNs;
     worst = std::max(worst, arrived - timeline.host_time(arrived + kOrigin - i * 50'000, arrived));
   }
   EXPECT_LE(worst, 2 * kMs);
   // a device that was started anew
-  EXPECT_EQ(timeline.host_time(5, 500 * kSecond), 500 * kSecond);
+  EXPECT_EQ(timeline.host_time(5, 500 * kSecondNs), 500 * kSecondNs);
 }
 
 TEST(Xreal, GoldenReportAndCommand) {

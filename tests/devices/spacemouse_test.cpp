@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "core/base/system/second.h"
 #include "devices/driver.h"
 #include "devices/spacemouse/spacemouse_sim.h"
 #include "devices/transport/record_transport.h"
@@ -14,7 +15,6 @@
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
 using Ids = std::initializer_list<std::uint16_t>;
 
 TEST(SpaceMouse, GoldenReportsOfEveryForm) {
@@ -119,7 +119,7 @@ TEST(SpaceMouse, ADeviceThatSendsOnlyRubbishIsOpenedAgain) {
   driver.poll(1);
   EXPECT_FALSE(driver.connected());
   EXPECT_EQ(driver.counts().refused, 1000U);
-  driver.poll(kSecond);
+  driver.poll(kSecondNs);
   EXPECT_TRUE(driver.connected());
 }
 
@@ -140,24 +140,24 @@ TEST(SpaceMouse, AThousandUnpluggingsLeaveNoThreadNoDescriptorAndTakeLessThanASe
   TimestampNs longest = 0;
   for (int cycle = 0; cycle < 1000; ++cycle) {
     sim.device().unplug();
-    const TimestampNs away = (cycle % 40) * kSecond / 2;
-    for (TimestampNs waited = 0; waited <= away; waited += kSecond / 20, clock.advance(kSecond / 20))
+    const TimestampNs away = (cycle % 40) * kSecondNs / 2;
+    for (TimestampNs waited = 0; waited <= away; waited += kSecondNs / 20, clock.advance(kSecondNs / 20))
       ASSERT_FALSE(driver.poll(clock.now()));
     ASSERT_FALSE(driver.connected());
     sim.device().plug();
     if (cycle % 2 == 0) driver.wake();  // as HotplugWatch does; without it only short losses are quick
     const TimestampNs replugged = clock.now();
     std::optional<SpaceMouseSample> sample;
-    while (!sample && clock.now() - replugged < 20 * kSecond) {
+    while (!sample && clock.now() - replugged < 20 * kSecondNs) {
       sim.move({cycle % 350, 0, 0}, {0, 0, 0});
       sample = driver.poll(clock.now());
-      clock.advance(kSecond / 60);
+      clock.advance(kSecondNs / 60);
     }
     ASSERT_TRUE(sample) << cycle;
     if (cycle % 2 == 0 || away == 0) longest = std::max(longest, clock.now() - replugged);
     ASSERT_EQ(sim.device().open_count(), 1);
   }
-  EXPECT_LT(longest, kSecond);
+  EXPECT_LT(longest, kSecondNs);
   EXPECT_EQ(driver.counts().losses, 1000U);
   EXPECT_EQ(entries_of("/proc/self/fd"), descriptors);
   EXPECT_EQ(entries_of("/proc/self/task"), threads);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/system/second.h"
 #include "devices/driver.h"
 #include "devices/spacemouse/spacenav_server.h"
 #include "devices/transport/sim_transport.h"
@@ -9,8 +10,6 @@
 
 namespace dubsar {
 namespace {
-
-constexpr TimestampNs kSecond = 1'000'000'000;
 
 TEST(Spacenav, GoldenEvents) {
   SpacenavEvent motion;
@@ -96,13 +95,13 @@ TEST(Spacenav, ASpaceMouseThatIsUnpluggedWhilePushedLetsGo) {
 
 TEST(Spacenav, NoDeflectionIsOlderThanASecond) {
   SpacenavBench bench;
-  bench.say(kPushedRight, kSecond);
-  EXPECT_FALSE(bench.driver.poll(2 * kSecond));
-  const auto still = bench.driver.poll(2 * kSecond + 1'000'000);
+  bench.say(kPushedRight, kSecondNs);
+  EXPECT_FALSE(bench.driver.poll(2 * kSecondNs));
+  const auto still = bench.driver.poll(2 * kSecondNs + 1'000'000);
   ASSERT_TRUE(still);
   EXPECT_EQ(still->translation, glm::dvec3(0.0));
-  EXPECT_FALSE(bench.driver.poll(5 * kSecond));
-  EXPECT_EQ(bench.say(kPushedRight, 6 * kSecond)->translation, glm::dvec3(1, 0, 0));
+  EXPECT_FALSE(bench.driver.poll(5 * kSecondNs));
+  EXPECT_EQ(bench.say(kPushedRight, 6 * kSecondNs)->translation, glm::dvec3(1, 0, 0));
 }
 
 TEST(Spacenav, AnswersAndSettingsInTheStreamAreNoMotionAndNoFault) {

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <thread>
 
+#include "core/base/system/second.h"
 #include "devices/driver.h"
 #include "devices/head_tracker/vrpn_server.h"
 #include "devices/transport/sim_transport.h"
@@ -22,8 +23,6 @@
 
 namespace dubsar {
 namespace {
-
-constexpr TimestampNs kSecond = 1'000'000'000;
 
 double angle_between(const glm::dquat& a, const glm::dquat& b) {
   return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a, b))));
@@ -148,9 +147,10 @@ TEST(Vrpn, PosesHaveTheTimeOfTheServersMeasurement) {
     server.send(format_vrpn(message));
   };
   measured(10);
-  EXPECT_EQ(driver.poll(kSecond)->time, kSecond);
+  EXPECT_EQ(driver.poll(kSecondNs)->time, kSecondNs);
   measured(20);
-  EXPECT_NEAR(static_cast<double>(driver.poll(kSecond + 50'000'000)->time), kSecond + 10e6, 1e4);  // 40 ms on its way
+  EXPECT_NEAR(static_cast<double>(driver.poll(kSecondNs + 50'000'000)->time), kSecondNs + 10e6,
+              1e4);  // 40 ms on its way
 }
 
 // vrpn_server 07.38 with a null tracker (two sensors, 60 Hz) and one that spins about (0, 1, 0) at 0.1 Hz, 100 times a
@@ -165,9 +165,9 @@ TEST(VrpnServer0738, ItsSpinningTrackerTurnsAtItsRate) {
     for (std::size_t at = 0; at < bytes.size(); at += piece) {
       server.send(std::span(bytes).subspan(at, std::min(piece, bytes.size() - at)));
       if (piece < bytes.size() && server.open_count() == 1)
-        if (const auto sample = driver.poll(kSecond)) samples.push_back(*sample);
+        if (const auto sample = driver.poll(kSecondNs)) samples.push_back(*sample);
     }
-    if (const auto sample = driver.poll(kSecond)) samples.push_back(*sample);
+    if (const auto sample = driver.poll(kSecondNs)) samples.push_back(*sample);
     EXPECT_EQ(driver.counts().refused, 0U);
     EXPECT_EQ(driver.note(), "");
     ASSERT_FALSE(samples.empty());
@@ -209,14 +209,14 @@ TEST(VrpnPrintDevices0738, IsServedHoweverItsWritesAreCutAndItsPingsAreAnswered)
   const auto bytes = captured("vrpn_print_devices_07.38_client.bin");
   for (const std::size_t piece : {std::size_t{1}, std::size_t{24}, std::size_t{100}, bytes.size()}) {
     VrpnServerSide side("Spin0");
-    EXPECT_TRUE(side.pose(kSecond, {}).empty());
+    EXPECT_TRUE(side.pose(kSecondNs, {}).empty());
     std::vector<std::byte> answers;
     for (std::size_t at = 0; at < bytes.size(); at += piece) {
       const auto answer = side.accept(std::span(bytes).subspan(at, std::min(piece, bytes.size() - at)));
       ASSERT_TRUE(answer) << answer.error().message;
       answers.insert(answers.end(), answer->begin(), answer->end());
     }
-    const auto pose = side.pose(5 * kSecond, {{0.1, 0.2, 0.3}, {1, 0, 0, 0}});
+    const auto pose = side.pose(5 * kSecondNs, {{0.1, 0.2, 0.3}, {1, 0, 0, 0}});
     answers.insert(answers.end(), pose.begin(), pose.end());
     const auto messages = messages_of(answers);
     std::int32_t pong = -100, tracker = -100, pos_quat = -100;

@@ -9,11 +9,12 @@
 #include <thread>
 
 #include "input/window_events.h"
+#include "tests/input/milliseconds.h"
 
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kMs = 1'000'000;
+using test::kMs;
 
 /// Says what the test told it to.
 struct Told final : InputSource {

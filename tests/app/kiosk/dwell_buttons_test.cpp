@@ -12,7 +12,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr TimestampNs kStep = 50'000'000;
+constexpr TimestampNs kDwellStep = 50'000'000;
 constexpr double kAspect = 16.0 / 9.0;
 
 /// One hand before the buttons of a panel.
@@ -24,7 +24,7 @@ struct Panel {
 
   void go_on(double seconds, std::vector<DwellHand> hands) {
     for (int i = 0; i < static_cast<int>(20 * seconds); ++i) {
-      now += kStep;
+      now += kDwellStep;
       if (const auto button = rest.update(now, hands, buttons, kAspect)) chosen.push_back(*button);
     }
   }

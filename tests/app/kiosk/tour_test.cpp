@@ -12,7 +12,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr TimestampNs kStep = 20'000'000;
+constexpr TimestampNs kTourStep = 20'000'000;
 
 Document enclosed() {
   Document out;
@@ -129,7 +129,7 @@ struct Walked {
 /// Goes on until nothing is shown, or for a time; says how things moved from picture to picture.
 Walked go_on(TourWalk& walk, TimestampNs& now, Keyframe& shown, double longest_s) {
   Walked out;
-  for (double s = 0.0; s < longest_s; s += 0.02, now += kStep) {
+  for (double s = 0.0; s < longest_s; s += 0.02, now += kTourStep) {
     const auto moment = walk.update(now);
     if (!moment) break;
     const Keyframe& next = moment->frame;
@@ -180,7 +180,7 @@ TEST_F(TourWalkTest, IsLeftAndTakenUpAgainAtTheSameStep) {
   go_on(walk, now, shown, 12.0);
   EXPECT_EQ(walk.at(), 1U);
   walk.leave();
-  const auto taken = walk.update(now += kStep);
+  const auto taken = walk.update(now += kTourStep);
   ASSERT_TRUE(taken && taken->settles && taken->camera);
   EXPECT_LT(turn_between_deg(taken->frame.camera.rotation, shown.camera.rotation), 1e-9) << "it stays where it is";
   go_on(walk, now, shown, 5.0);

@@ -11,7 +11,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr TimestampNs kStep = 50'000'000;  // 20 pictures a second
+constexpr TimestampNs kPicture = 50'000'000;  // 20 pictures a second
 
 /// A visit told by what happens for how long.
 class Story {
@@ -20,7 +20,7 @@ class Story {
   /// Goes on for `seconds`; `seen` is called for each picture.
   VisitPicture go_on(double seconds, VisitMoment moment, const std::function<void(const VisitPicture&)>& seen = {}) {
     VisitPicture last;
-    for (int i = 0; i < static_cast<int>(seconds * 20); ++i, now_ += kStep) {
+    for (int i = 0; i < static_cast<int>(seconds * 20); ++i, now_ += kPicture) {
       last = visit_.update(now_, moment);
       resets += last.reset;
       arrivals += last.arrived;
@@ -263,12 +263,12 @@ TEST(Visit, TwelveDegreesInOneHoldAreTurnedAndAsMuchInThreeAreNot) {
     for (int i = 0; i < 300; ++i) {
       VisitMoment moment = hand(HandState::kHolding, 0.04);
       moment.held_deg = 0.04 * (one ? i : i % 100);
-      visit.update(i * kStep, moment);
+      visit.update(i * kPicture, moment);
     }
     EXPECT_EQ(visit.counts().done[static_cast<std::size_t>(Tutorial::kTurn)], 0);
     VisitMoment moment = hand(HandState::kHolding, 0.1);
     moment.held_deg = one ? 12.1 : 4.1;
-    visit.update(300 * kStep, moment);
+    visit.update(300 * kPicture, moment);
     EXPECT_EQ(visit.counts().done[static_cast<std::size_t>(Tutorial::kTurn)], one ? 1 : 0);
   }
 }

@@ -14,18 +14,19 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kEdge = 72;
+constexpr std::int64_t kClayEdge = 72;
 constexpr float kReach = 12.0f, kNoise = 0.4f;  ///< of single voxels, as behind a scan of 17 dB
-constexpr float kPlane = 35.5f;                 ///< height of the patch
+constexpr float kPatchHeight = 35.5f;           ///< height of the patch
 
 /// Clay everywhere, and a flat patch across it.
 struct ClayScene {
-  BitVolume inside{Dims{kEdge, kEdge, kEdge}};
-  Volume<float> scan{Dims{kEdge, kEdge, kEdge}};
+  BitVolume inside{Dims{kClayEdge, kClayEdge, kClayEdge}};
+  Volume<float> scan{Dims{kClayEdge, kClayEdge, kClayEdge}};
   ContactBand band;
   BandDensity density;
 
-  explicit ClayScene(const std::function<float(const glm::vec3&)>& clay, float plane = kPlane, float noise = kNoise)
+  explicit ClayScene(const std::function<float(const glm::vec3&)>& clay, float plane = kPatchHeight,
+                     float noise = kNoise)
       : band(make(clay, plane, noise)), density(read()) {}
 
  private:
@@ -33,15 +34,15 @@ struct ClayScene {
     std::mt19937 bits(7);
     const auto uniform = [&] { return (static_cast<double>(bits()) + 0.5) / 4294967296.0; };
     std::vector<PatchPoint> samples;
-    for (int z = 0; z < kEdge; ++z)
-      for (int y = 0; y < kEdge; ++y)
-        for (int x = 0; x < kEdge; ++x) {
+    for (int z = 0; z < kClayEdge; ++z)
+      for (int y = 0; y < kClayEdge; ++y)
+        for (int x = 0; x < kClayEdge; ++x) {
           inside.set(x, y, z, true);
           const double gauss = std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
           scan.at(x, y, z) = clay(glm::vec3(x, y, z)) + noise * static_cast<float>(gauss);
         }
-    for (int y = 1; y + 1 < kEdge; ++y)
-      for (int x = 1; x + 1 < kEdge; ++x) samples.push_back({{x, y, plane}, {0.0f, 0.0f, 1.0f}});
+    for (int y = 1; y + 1 < kClayEdge; ++y)
+      for (int x = 1; x + 1 < kClayEdge; ++x) samples.push_back({{x, y, plane}, {0.0f, 0.0f, 1.0f}});
     SilentProgress progress;
     return ContactBand::make(inside, std::move(samples), kReach, progress).value();
   }
@@ -55,7 +56,7 @@ struct ClayScene {
 /// Where the border really is: a bowl that reaches 5 steps into the tablet.
 float border(const glm::vec3& p) {
   const float u = (p.x - 36.0f) / 14.0f, v = (p.y - 36.0f) / 14.0f;
-  return kPlane - 5.0f * std::exp(-(u * u + v * v));
+  return kPatchHeight - 5.0f * std::exp(-(u * u + v * v));
 }
 
 constexpr float kPointSpread =
@@ -76,10 +77,10 @@ TEST(CompareClays, OneClayIsNotTwo) {
   const ClayScene same([](const glm::vec3&) { return 1.0f; });
   EXPECT_FALSE(compare_clays(same.band, same.inside, same.density, kPointSpread).has_value());
   // A scan that is darker in its middle, as beam hardening leaves it.
-  const ClayScene slope([](const glm::vec3& p) { return 1.0f + 0.02f * (p.z - kPlane); });
+  const ClayScene slope([](const glm::vec3& p) { return 1.0f + 0.02f * (p.z - kPatchHeight); });
   EXPECT_FALSE(compare_clays(slope.band, slope.inside, slope.density, kPointSpread).has_value());
   // A film of air is no other clay.
-  const ClayScene film([](const glm::vec3& p) { return std::abs(p.z - kPlane) < 0.6f ? 0.6f : 1.0f; });
+  const ClayScene film([](const glm::vec3& p) { return std::abs(p.z - kPatchHeight) < 0.6f ? 0.6f : 1.0f; });
   EXPECT_FALSE(compare_clays(film.band, film.inside, film.density, kPointSpread).has_value());
 }
 
@@ -93,7 +94,7 @@ TEST(CompareClays, TwoClaysAreToldApartWhereverTheyLieOnTheGrid) {
 }
 
 TEST(DivideClay, WithoutNoiseVotesAndCostsAreFinite) {
-  const ClayScene scene([](const glm::vec3& p) { return p.z < border(p) ? 1.0f : 1.25f; }, kPlane, 0.0f);
+  const ClayScene scene([](const glm::vec3& p) { return p.z < border(p) ? 1.0f : 1.25f; }, kPatchHeight, 0.0f);
   const auto contrast = compare_clays(scene.band, scene.inside, scene.density, kPointSpread);
   ASSERT_TRUE(contrast.has_value());
   SilentProgress progress;

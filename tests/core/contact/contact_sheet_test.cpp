@@ -10,17 +10,17 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kEdge = 40;
+constexpr std::int64_t kSheetEdge = 40;
 
 /// Clay everywhere, and patches along a level plane below the oblique one.
 ContactBand band_of_clay() {
-  BitVolume inside(Dims{kEdge, kEdge, kEdge});
-  for (int z = 0; z < kEdge; ++z)
-    for (int y = 0; y < kEdge; ++y)
-      for (int x = 0; x < kEdge; ++x) inside.set(x, y, z, true);
+  BitVolume inside(Dims{kSheetEdge, kSheetEdge, kSheetEdge});
+  for (int z = 0; z < kSheetEdge; ++z)
+    for (int y = 0; y < kSheetEdge; ++y)
+      for (int x = 0; x < kSheetEdge; ++x) inside.set(x, y, z, true);
   std::vector<PatchPoint> samples;
-  for (int y = 4; y < kEdge - 4; ++y)
-    for (int x = 4; x < kEdge - 4; ++x)
+  for (int y = 4; y < kSheetEdge - 4; ++y)
+    for (int x = 4; x < kSheetEdge - 4; ++x)
       samples.push_back({{static_cast<float>(x), static_cast<float>(y), 19.0f}, {0, 0, 1}});
   SilentProgress progress;
   return ContactBand::make(inside, std::move(samples), 9.0f, progress).value();

@@ -16,9 +16,9 @@
 namespace dubsar {
 namespace {
 
-constexpr int kEdge = 64;
-constexpr float kPlane = 32.0f;  ///< height of the patch
-constexpr float kReach = 12.0f;
+constexpr int kPocketEdge = 64;
+constexpr float kPatchPlane = 32.0f;  ///< height of the patch
+constexpr float kPocketReach = 12.0f;
 
 /// A wedge 8 steps deep and as wide, under the plane: a cone with its tip down.
 float wedge(const glm::vec3& p, const glm::vec3& mouth) {
@@ -39,7 +39,7 @@ struct CavityScene {
 
   /// Lowest and highest point of clay beside the cavity.
   std::pair<int, int> heights(const ClayCavity& cavity) const {
-    std::pair<int, int> heights{kEdge, 0};
+    std::pair<int, int> heights{kPocketEdge, 0};
     for (const std::uint32_t n : cavity) {
       heights.first = std::min(heights.first, band.point(n).z);
       heights.second = std::max(heights.second, band.point(n).z);
@@ -51,7 +51,7 @@ struct CavityScene {
 
  private:
   static SurfaceModel make(const scene::Field& air) {
-    SurfaceModel made = scene::extract_model({kEdge, kEdge, kEdge}, [&](const glm::vec3& p) {
+    SurfaceModel made = scene::extract_model({kPocketEdge, kPocketEdge, kPocketEdge}, [&](const glm::vec3& p) {
       return std::min(scene::box(p, glm::vec3(32.0f), glm::vec3(29.0f), 3.0f), -air(p));
     });
     made.partitions.add(PartitionKind::kTablet);
@@ -65,14 +65,14 @@ struct CavityScene {
   }
   ContactBand around_patch() const {
     std::vector<PatchPoint> samples;
-    for (int y = 17; y < kEdge - 16; ++y)
-      for (int x = 17; x < kEdge - 16; ++x) samples.push_back({{x, y, kPlane}, {0.0f, 0.0f, 1.0f}});
+    for (int y = 17; y < kPocketEdge - 16; ++y)
+      for (int x = 17; x < kPocketEdge - 16; ++x) samples.push_back({{x, y, kPatchPlane}, {0.0f, 0.0f, 1.0f}});
     SilentProgress progress;
-    return ContactBand::make(model.samples.signs, std::move(samples), kReach, progress).value();
+    return ContactBand::make(model.samples.signs, std::move(samples), kPocketReach, progress).value();
   }
 };
 
-float pore(const glm::vec3& p) { return scene::ball(p, {38.3f, 32.2f, kPlane - 7.6f}, 2.2f); }
+float pore(const glm::vec3& p) { return scene::ball(p, {38.3f, 32.2f, kPatchPlane - 7.6f}, 2.2f); }
 
 TEST(RestPieces, APoreIsOneClosedPieceOfItsVolumeWhoseFacesAreMutuallyBesideEachOther) {
   const CavityScene scene(pore);
@@ -93,7 +93,7 @@ TEST(RestPieces, APoreIsOneClosedPieceOfItsVolumeWhoseFacesAreMutuallyBesideEach
 
 TEST(CavitiesOffContact, APoreInTheClayIsOneAndAWedgeThatOpensToTheContactIsNot) {
   const CavityScene scene([](const glm::vec3& p) {
-    return std::max(pore(p), wedge(p, {24.2f, 32.1f, kPlane + 0.3f}));
+    return std::max(pore(p), wedge(p, {24.2f, 32.1f, kPatchPlane + 0.3f}));
   });
   const auto off = cavities_off_contact(scene.rest(), scene.band, scene.faces);
   ASSERT_EQ(off.size(), 1u);
@@ -103,7 +103,7 @@ TEST(CavitiesOffContact, APoreInTheClayIsOneAndAWedgeThatOpensToTheContactIsNot)
 }
 
 TEST(CavitiesOffContact, APocketOnAPatchThatMissesItsMouthIsNone) {
-  const CavityScene scene([](const glm::vec3& p) { return wedge(p, {32.2f, 32.1f, kPlane - 2.7f}); });
+  const CavityScene scene([](const glm::vec3& p) { return wedge(p, {32.2f, 32.1f, kPatchPlane - 2.7f}); });
   EXPECT_TRUE(cavities_off_contact(scene.rest(), scene.band, scene.faces).empty());
 }
 
@@ -141,7 +141,7 @@ TEST(DivideClay, GoesRoundACavityThatIsWhole) {
   for (std::uint32_t n = 0; n < dips.strength.size(); ++n) {
     const glm::vec3 p(scene.band.point(n));
     const float aside = glm::length(glm::vec2(p.x - 38.3f, p.y - 32.2f));
-    if (p.z > kPlane - 9.0f && p.z < kPlane && aside < 6.0f && aside > 2.0f) dips.strength[n] = 3.0f;
+    if (p.z > kPatchPlane - 9.0f && p.z < kPatchPlane && aside < 6.0f && aside > 2.0f) dips.strength[n] = 3.0f;
   }
   const auto envelopes = [&](const std::vector<ClayCavity>& whole) {
     SilentProgress progress;
@@ -149,7 +149,7 @@ TEST(DivideClay, GoesRoundACavityThatIsWhole) {
     for (std::uint32_t n = 0; n < dips.strength.size(); ++n) {  // the contact ends at the patch
       const glm::vec3 p(scene.band.point(n));
       if (std::max(std::abs(p.x - 32.0f), std::abs(p.y - 32.0f)) > 15.0f)
-        hints.push_back({n, p.z < kPlane ? ClaySide::kTablet : ClaySide::kEnvelope, kCertain});
+        hints.push_back({n, p.z < kPatchPlane ? ClaySide::kTablet : ClaySide::kEnvelope, kCertain});
     }
     const std::vector<ClaySide> side = ClayDivision({scene.band, dips, hints, {}, whole}).sides(progress).value();
     return std::count_if(off[0].begin(), off[0].end(), [&](std::uint32_t n) { return side[n] == ClaySide::kEnvelope; });

@@ -3,20 +3,11 @@
 #include <cmath>
 
 #include "core/exa/values/exact.h"
+#include "tests/core/exa/chunk_views.h"
 #include "tests/core/exa/exa_test_models.h"
 
 namespace dubsar {
 namespace {
-
-std::vector<std::string_view> views_of(const std::vector<std::string>& chunks) {
-  return {chunks.begin(), chunks.end()};
-}
-
-std::size_t bytes_of(const std::vector<std::string>& chunks) {
-  std::size_t bytes = 0;
-  for (const std::string& chunk : chunks) bytes += chunk.size();
-  return bytes;
-}
 
 /// Light as rays give it: smooth over the surface, and noise of some levels.
 std::vector<std::uint8_t> noisy_light(const QuadMesh& mesh, unsigned seed) {

@@ -10,20 +10,11 @@
 
 #include "core/exa/labels/contact_offsets.h"
 #include "core/exa/labels/label_plane.h"
+#include "tests/core/exa/chunk_views.h"
 #include "tests/core/extract/labelled_help.h"
 
 namespace dubsar {
 namespace {
-
-std::vector<std::string_view> views_of(const std::vector<std::string>& chunks) {
-  return {chunks.begin(), chunks.end()};
-}
-
-std::size_t bytes_of(const std::vector<std::string>& chunks) {
-  std::size_t bytes = 0;
-  for (const std::string& chunk : chunks) bytes += chunk.size();
-  return bytes;
-}
 
 KnownContact known_of(const LabelledScene& scene) {
   return {*scene.samples, *scene.index, *scene.labels, *scene.edges};

@@ -4,16 +4,13 @@
 #include "tests/bench/paper/paper_profile.h"
 #include "tests/bench/paper/paper_signs.h"
 #include "tests/bench/paper/paper_words.h"
+#include "tests/core/exa/chunk_views.h"
 #include "tests/core/exa/exa_test_models.h"
 #include "tests/core/exa/sign_volume.h"
 
 namespace dubsar {
 namespace {
 using ::testing::HasSubstr;
-
-std::vector<std::string_view> views_of(const std::vector<std::string>& chunks) {
-  return {chunks.begin(), chunks.end()};
-}
 
 const Dims kShapes[] = {{1, 1, 1},    {2, 1, 1},    {1, 33, 70},  {64, 64, 1},   {65, 1, 65},
                         {3, 3, 3},    {31, 33, 32}, {5, 3, 9},    {32, 32, 32},  {33, 33, 33},

@@ -27,13 +27,13 @@ Volume<float> denoised(const Volume<float>& v, const DenoiseOptions& options, st
   return read_all(**filter, height).value();
 }
 
-struct Case {
+struct NoiseCase {
   DenoiseOptions options;
   std::string name;
 };
 
-std::vector<Case> all_filters(int iterations, double sigma) {
-  std::vector<Case> cases;
+std::vector<NoiseCase> all_filters(int iterations, double sigma) {
+  std::vector<NoiseCase> cases;
   for (const int window : {3, 5, 7}) {
     for (const auto& method : kDenoiseMethods)
       for (const auto& range : kRangeWeights) {
@@ -49,7 +49,7 @@ TEST(Denoise, EveryFilterAgreesWithItsDefinition) {
   oracle::Noise noise(1);
   for (const Dims dims : {Dims{37, 6, 5}, Dims{3, 2, 1}, Dims{1, 9, 2}, Dims{17, 1, 8}}) {
     const Volume<float> v = make_volume(dims, [&](auto x, auto, auto) { return (x > 11 ? 5.0 : 0.0) + noise(); });
-    for (const Case& c : all_filters(1, 1.1)) {
+    for (const NoiseCase& c : all_filters(1, 1.1)) {
       const Volume<float> out = denoised(v, c.options);
       const Volume<double> expected = oracle::denoise_once(v, c.options);
       for (std::int64_t i = 0; i < dims.count(); ++i)
@@ -70,7 +70,7 @@ TEST(Denoise, EveryInstructionSetAgreesWithTheDefinitionAndWithTheOthers) {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   };
   const std::int64_t all = hwy::SupportedTargets();
-  for (const Case& c : all_filters(1, 1.1)) {
+  for (const NoiseCase& c : all_filters(1, 1.1)) {
     const Volume<double> expected = oracle::denoise_once(v, c.options);
     std::optional<Volume<float>> first;
     for (std::int64_t left = all; left != 0; left &= left - 1) {
@@ -107,7 +107,7 @@ TEST(Denoise, WhatIsWantedIsTheSameToTheBitAsInTheWhole) {
   mask.set(4, 2, 1);
   mask.set(5, 2, 1);
   mask.set(10, 3, 3);
-  for (const Case& c : all_filters(2, 1.1)) {
+  for (const NoiseCase& c : all_filters(2, 1.1)) {
     const Volume<float> whole = denoised(v, c.options);
     for (const std::int64_t reach : {0, 2}) {
       VolumeSource source(v);
@@ -130,7 +130,7 @@ TEST(Denoise, WhatIsWantedIsTheSameToTheBitAsInTheWhole) {
 TEST(Denoise, SlabHeightAndThreadsChangeNoBit) {
   oracle::Noise noise(2);
   const Volume<float> v = make_volume({41, 18, 13}, [&](auto x, auto, auto) { return (x > 20 ? 6.0 : 0.0) + noise(); });
-  for (const Case& c : all_filters(2, 1.0)) {
+  for (const NoiseCase& c : all_filters(2, 1.0)) {
     set_thread_count(1);
     const Volume<float> expected = denoised(v, c.options);
     for (const auto& [threads, height] : {std::pair{1, 2}, std::pair{2, 1}, std::pair{7, 5}}) {
@@ -164,7 +164,7 @@ TEST(Denoise, SlabsOfALargeSliceAreTheSameToo) {  // several batches of the ring
 TEST(Denoise, ConstantsStay) {
   for (const float value : {0.0F, 0.0017F, -1024.3F, 1e-40F, 5e36F, 3e38F}) {
     const Volume<float> v = make_volume({19, 8, 7}, [&](auto, auto, auto) { return value; });
-    for (const Case& c : all_filters(3, 0.0001)) {
+    for (const NoiseCase& c : all_filters(3, 0.0001)) {
       const Volume<float> result = denoised(v, c.options);
       for (const float out : result.voxels.span())
         ASSERT_NEAR(out, value, std::abs(value) * 1e-6F + 1e-44F) << c.name << " of " << value;
@@ -179,7 +179,7 @@ TEST(Denoise, HugeRangesAndDenormalsStayFiniteAndInsideTheRange) {
     const Volume<float> v =
         make_volume({35, 9, 9}, [&](auto x, auto y, auto z) { return (x * 7 + y * 3 + z) % 5 < 2 ? top : -top; });
     for (const double sigma : {1e-300, 1e-20, 1.0, 1e30, 1e300}) {
-      for (const Case& c : all_filters(2, sigma)) {
+      for (const NoiseCase& c : all_filters(2, sigma)) {
         const Volume<float> result = denoised(v, c.options);
         for (const float out : result.voxels.span()) {
           ASSERT_TRUE(std::isfinite(out)) << c.name << " range " << top << " sigma " << sigma;

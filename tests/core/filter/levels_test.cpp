@@ -17,7 +17,7 @@ namespace dubsar {
 namespace {
 
 constexpr std::int64_t kEdge = 96;
-constexpr double kMiddle = 47.5, kRadius = 37.0, kBlur = 0.7;
+constexpr double kBallMiddle = 47.5, kRadius = 37.0, kBlur = 0.7;
 constexpr float kHalf = 0.5f;
 
 struct Greys {
@@ -30,7 +30,7 @@ Volume<float> ball(const GreysAt& greys, double noise, bool wrapped) {
   oracle::Noise gauss(3);
   return oracle::make_volume({kEdge, kEdge, kEdge}, [&](auto x, auto y, auto z) {
     const glm::dvec3 p(x, y, z);
-    const double out = glm::length(p - kMiddle) - kRadius;
+    const double out = glm::length(p - kBallMiddle) - kRadius;
     const auto within = [&](double d) { return 0.5 * std::erfc(d / (kBlur * std::sqrt(2.0))); };
     const double share = within(out) + (wrapped ? within(4.0 - out) : 0.0);
     const Greys g = greys(p);
@@ -56,7 +56,7 @@ double bias(const Volume<float>& volume, const std::function<bool(const glm::dve
     if (!part(n)) continue;
     double least = 9.0;
     for (double at = -2.0; at < 2.0; at += 0.05) {
-      const double a = value(kMiddle + (kRadius + at) * n), b = value(kMiddle + (kRadius + at + 0.05) * n);
+      const double a = value(kBallMiddle + (kRadius + at) * n), b = value(kBallMiddle + (kRadius + at + 0.05) * n);
       if (a < double(kHalf) || b >= double(kHalf)) continue;
       least = std::abs(at) < std::abs(least) ? at + 0.05 * (a - double(kHalf)) / (a - b) : least;
     }

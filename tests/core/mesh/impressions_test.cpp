@@ -38,7 +38,7 @@ double depth_of(const Wedge& w, const glm::dvec2& p) {
   return std::max(0.0, depth);
 }
 
-HeightMap sheet(int width, int height, const std::vector<Wedge>& wedges, double rise = 0.0) {
+HeightMap pressed_sheet(int width, int height, const std::vector<Wedge>& wedges, double rise = 0.0) {
   HeightMap map;
   map.width = width;
   map.height = height;
@@ -67,7 +67,7 @@ TEST(Impressions, TailsPointWhereTheyWerePressedTo) {
       const double w = width(random);
       wedges.push_back({{x, y}, any(random), w, longer(random) * w});
     }
-  const HeightMap map = sheet(400, 400, wedges, 12.0);
+  const HeightMap map = pressed_sheet(400, 400, wedges, 12.0);
   int right = 0;
   for (const Wedge& w : wedges) {
     double least = 1e9, off = 180.0;
@@ -84,9 +84,9 @@ TEST(Impressions, TailsPointWhereTheyWerePressedTo) {
 }
 
 TEST(Impressions, LevelAndCurvedClayAndRulingsAreNone) {
-  EXPECT_TRUE(find_impressions(sheet(200, 160, {})).empty());
-  EXPECT_TRUE(find_impressions(sheet(200, 160, {}, 15.0)).empty());
-  HeightMap ruled = sheet(200, 160, {});
+  EXPECT_TRUE(find_impressions(pressed_sheet(200, 160, {})).empty());
+  EXPECT_TRUE(find_impressions(pressed_sheet(200, 160, {}, 15.0)).empty());
+  HeightMap ruled = pressed_sheet(200, 160, {});
   for (int y = 0; y < ruled.height; ++y)
     for (int x = 0; x < ruled.width; ++x)
       ruled.mm[ruled.index(x, y)] -= y % 30 < 3 ? 0.08f * static_cast<float>(kStepsPerWedge * ruled.step_mm) : 0.f;

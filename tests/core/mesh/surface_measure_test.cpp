@@ -18,7 +18,7 @@ constexpr double kPi = std::numbers::pi;
 
 /// A grid of cells over (0..1)^2, each place from `at`; closed in u when `round`.
 template <class At>
-TriMesh sheet(int nu, int nv, bool round, const At& at) {
+TriMesh grid_of_cells(int nu, int nv, bool round, const At& at) {
   TriMesh mesh;
   const int row = round ? nu : nu + 1;
   for (int v = 0; v <= nv; ++v)
@@ -34,7 +34,7 @@ TriMesh sheet(int nu, int nv, bool round, const At& at) {
 }
 
 TriMesh sphere(double radius) {
-  return sheet(240, 120, true, [&](double u, double v) {
+  return grid_of_cells(240, 120, true, [&](double u, double v) {
     const double a = 2 * kPi * u, b = kPi * (v - 0.5);
     return radius * glm::dvec3(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
   });
@@ -65,13 +65,14 @@ TEST(SurfaceMeasure, WaysOnASphereAreThoseOfGreatCirclesWithinATenthOfAPercent) 
 
 TEST(SurfaceMeasure, WaysGoRoundEdgesAndNotAcrossGaps) {
   // A sheet folded by a right angle: 10 mm up to the fold, 10 mm beyond it.
-  const TriMesh folded = sheet(40, 40, false, [](double u, double v) {
+  const TriMesh folded = grid_of_cells(40, 40, false, [](double u, double v) {
     return u <= 0.5 ? glm::dvec3(20 * u, 20 * v, 0) : glm::dvec3(10, 20 * v, -20 * (u - 0.5));
   });
   const auto path = section_between(folded, place(folded, {4, 7, 0}), place(folded, {10, 7, -3}));
   EXPECT_NEAR(length_of(path), 6.0 + 3.0, 0.009);
-  TriMesh two = sheet(10, 10, false, [](double u, double v) { return glm::dvec3(5 * u, 5 * v, 0); });
-  const TriMesh other = sheet(10, 10, false, [](double u, double v) { return glm::dvec3(8 + 5 * u, 5 * v, 0); });
+  TriMesh two = grid_of_cells(10, 10, false, [](double u, double v) { return glm::dvec3(5 * u, 5 * v, 0); });
+  const TriMesh other =
+      grid_of_cells(10, 10, false, [](double u, double v) { return glm::dvec3(8 + 5 * u, 5 * v, 0); });
   const auto base = static_cast<std::uint32_t>(two.positions.size());
   two.positions.insert(two.positions.end(), other.positions.begin(), other.positions.end());
   for (const Triangle& t : other.triangles) two.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
@@ -80,7 +81,7 @@ TEST(SurfaceMeasure, WaysGoRoundEdgesAndNotAcrossGaps) {
 }
 
 TEST(SurfaceMeasure, AProfileKnowsItsDeepestPlace) {
-  const TriMesh plate = sheet(400, 40, false, [](double u, double v) {
+  const TriMesh plate = grid_of_cells(400, 40, false, [](double u, double v) {
     const double x = 20 * u;  // a groove of 45 degrees, 2 mm deep, in the middle
     return glm::dvec3(x, 4 * v, -std::max(0.0, 2.0 - std::abs(x - 10)));
   });
@@ -116,7 +117,7 @@ TEST(SurfaceMeasure, WedgesOnABentAndUnevenSideAreAsDeepAsTheyWereMadeWithinThre
   }
   const auto side = [](double x, double y) { return -((x - 20) * (x - 20) + (y - 20) * (y - 20)) / (2 * 60.0); };
   std::normal_distribution<> noise(0.0, 0.012);
-  const TriMesh plate = sheet(500, 500, false, [&](double u, double v) {
+  const TriMesh plate = grid_of_cells(500, 500, false, [&](double u, double v) {
     const double x = 40 * u, y = 40 * v;
     double hollow = 0.0;
     for (Wedge& w : wedges) {
@@ -165,7 +166,7 @@ TEST(SurfaceMeasure, WhatABlurFilledOfABottomIsGivenBackWhereTheBlurIsKnown) {
         }
       blurred.push_back(sum / all);
     }
-  const TriMesh plate = sheet(kCells, kCells, false, [&](double u, double v) {
+  const TriMesh plate = grid_of_cells(kCells, kCells, false, [&](double u, double v) {
     const auto at = static_cast<std::size_t>(std::lround(v * kCells) * (kCells + 1) + std::lround(u * kCells));
     return glm::dvec3(kSide * u, kSide * v, blurred[at]);
   });
@@ -183,7 +184,7 @@ TEST(SurfaceMeasure, WhatABlurFilledOfABottomIsGivenBackWhereTheBlurIsKnown) {
 
 TEST(SurfaceMeasure, ClayThatWasPushedUpRoundAWedgeDoesNotCountAsGround) {
   // Lips of a twentieth of the depth, falling off over half of the wedge's width.
-  const TriMesh plate = sheet(320, 320, false, [](double u, double v) {
+  const TriMesh plate = grid_of_cells(320, 320, false, [](double u, double v) {
     const double x = 16 * u, y = 16 * v;
     const double r = std::hypot(std::remainder(x - 8, 2.6), std::remainder(y - 8, 2.6));  // dense: one each 2.6 mm
     const double beyond = std::max(0.0, r - 0.8);
@@ -199,7 +200,7 @@ TEST(SurfaceMeasure, NorDoesItOnASurfaceAsRoughAsThoseOfScans) {
   // Impressions as dense as in text: lips of 6 % of the depth cover most of what is between them, and noise hides them.
   std::mt19937 random(8806);
   std::normal_distribution<double> noise(0.0, 0.012);
-  const TriMesh plate = sheet(400, 400, false, [&](double u, double v) {
+  const TriMesh plate = grid_of_cells(400, 400, false, [&](double u, double v) {
     const double x = 20 * u, y = 20 * v;
     const double r = std::hypot(std::remainder(x - 10, 1.6), std::remainder(y - 10, 1.6));
     const double beyond = std::max(0.0, r - 0.5) / 0.25;
@@ -218,7 +219,7 @@ TEST(SurfaceMeasure, NorDoesItOnASurfaceAsRoughAsThoseOfScans) {
 }
 
 TEST(SurfaceMeasure, WhatCannotBeMeasuredIsRefusedInASentence) {
-  const TriMesh plate = sheet(10, 10, false, [](double u, double v) { return glm::dvec3(5 * u, 5 * v, 0); });
+  const TriMesh plate = grid_of_cells(10, 10, false, [](double u, double v) { return glm::dvec3(5 * u, 5 * v, 0); });
   EXPECT_EQ(nearest_place(TriMesh(), {0, 0, 0}).error().kind, ErrorKind::kBadData);
   EXPECT_EQ(impression_depth(plate, place(plate, {2, 2, 0}), {0.0}).error().kind, ErrorKind::kUsage);
   const auto few = impression_depth(plate, place(plate, {2, 2, 0}), {0.6});

@@ -14,6 +14,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/tri_mesh.h"
 #include "core/mesh_io/glb/glb_words.h"
+#include "core/mesh_io/mesh_formats.h"
 
 namespace dubsar::foreign {
 
@@ -158,6 +159,14 @@ std::string stl_text(const glm::dvec3& at, double scale, Spell&& spelled) {
     out += " " + spelled("endloop") + "\n" + spelled("endfacet") + "\n";
   }
   return out + spelled("endsolid") + " body\n";
+}
+
+/// The mesh of a file that must be readable.
+inline TriMesh read(const GlbMaker& maker, const MeshReadOptions& options = {}) {
+  SilentProgress progress;
+  auto mesh = parse_glb(maker.file(), progress, options);
+  EXPECT_TRUE(mesh) << mesh.error().message;
+  return mesh ? *std::move(mesh) : TriMesh();
 }
 
 }  // namespace dubsar::foreign

@@ -14,13 +14,6 @@ using foreign::GlbMaker;
 using foreign::Json;
 using ::testing::HasSubstr;
 
-TriMesh read(const GlbMaker& maker, const MeshReadOptions& options = {}) {
-  SilentProgress progress;
-  auto mesh = parse_glb(maker.file(), progress, options);
-  EXPECT_TRUE(mesh) << mesh.error().message;
-  return mesh ? *std::move(mesh) : TriMesh();
-}
-
 void expect_body(const TriMesh& mesh, double volume = 4000.0, double tolerance = 0.1) {
   ASSERT_FALSE(mesh.triangles.empty());
   EXPECT_NEAR(foreign::volume_of(mesh), volume, tolerance);

@@ -16,13 +16,6 @@ namespace {
 using foreign::GlbMaker;
 using foreign::Json;
 
-TriMesh read(const GlbMaker& maker, const MeshReadOptions& options = {}) {
-  SilentProgress progress;
-  auto mesh = parse_glb(maker.file(), progress, options);
-  EXPECT_TRUE(mesh) << mesh.error().message;
-  return mesh ? *std::move(mesh) : TriMesh();
-}
-
 /// A square of 2 x 2 with a picture of 8 x 4 on it.
 struct Picture {
   Image image{8, 4, 3};

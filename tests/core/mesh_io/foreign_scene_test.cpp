@@ -15,13 +15,6 @@ using foreign::GlbMaker;
 using foreign::Json;
 using ::testing::HasSubstr;
 
-TriMesh read(const GlbMaker& maker) {
-  SilentProgress progress;
-  auto mesh = parse_glb(maker.file(), progress);
-  EXPECT_TRUE(mesh) << mesh.error().message;
-  return mesh ? *std::move(mesh) : TriMesh();
-}
-
 std::string says(const GlbMaker& maker) {
   SilentProgress progress;
   const auto mesh = parse_glb(maker.file(), progress);

@@ -41,11 +41,11 @@ TriMesh sheet() {
   return mesh;
 }
 
-struct Glb {
+struct PackedGlb {
   Json json;
   std::string binary;
 };
-Glb open_glb(const fs::path& path) {
+PackedGlb open_glb(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   const auto word = [&](std::size_t at) {
@@ -58,7 +58,7 @@ Glb open_glb(const fs::path& path) {
 }
 
 /// The bytes of an accessor, unpacked by the reference decoder.
-std::vector<unsigned char> unpacked(const Glb& glb, std::size_t accessor) {
+std::vector<unsigned char> unpacked(const PackedGlb& glb, std::size_t accessor) {
   const Json& view = glb.json["bufferViews"][glb.json["accessors"][accessor]["bufferView"].get<std::size_t>()];
   const Json& packed = view["extensions"]["EXT_meshopt_compression"];
   const std::size_t count = packed["count"], stride = packed["byteStride"], length = packed["byteLength"];
@@ -83,7 +83,7 @@ TEST(GlbCompressed, DecodesToTheSameSurfaceWithinHalfAStepAndIsAThirdOfTheSize) 
   const auto written = write_mesh(folder / "small.glb", mesh, options, progress);
   ASSERT_TRUE(written) << written.error().message;
   EXPECT_LT(fs::file_size(folder / "small.glb"), fs::file_size(folder / "plain.glb") / 3);
-  const Glb glb = open_glb(folder / "small.glb");
+  const PackedGlb glb = open_glb(folder / "small.glb");
   EXPECT_EQ(glb.json["extensionsRequired"], (Json{"KHR_mesh_quantization", "EXT_meshopt_compression"}));
   ASSERT_EQ(glb.json["meshes"].size(), 2u);
   std::size_t triangles = 0;

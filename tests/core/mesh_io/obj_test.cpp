@@ -10,7 +10,7 @@ using ::testing::HasSubstr;
 
 class Obj : public FileTest {};
 
-Result<TriMesh> parse(const std::string& bytes) {
+Result<TriMesh> parsed_obj(const std::string& bytes) {
   SilentProgress progress;
   return parse_obj(bytes, progress);
 }
@@ -32,7 +32,7 @@ TEST_F(Obj, MeshReadBackEqualsTheMeshWritten) {
 }
 
 TEST_F(Obj, NegativeIndicesPolygonsColoursAndContinuationsAreRead) {
-  const auto mesh = parse(
+  const auto mesh = parsed_obj(
       "mtllib x.mtl\nv 0 0 0 1 0 0.5\r\nv 1 0 0 0 1 2\nv 1 \\\n1 0 0 0 0\nv 0 1 0 0 0 0\nvt 0 0\n"
       "vn 0 0 2\nvn 0 0 1\nusemtl m\nf -4/1/-1 -3/1/2 3/1/2 \\\n 4/1/2\n");
   ASSERT_TRUE(mesh) << mesh.error().message;
@@ -44,7 +44,7 @@ TEST_F(Obj, NegativeIndicesPolygonsColoursAndContinuationsAreRead) {
 
 TEST_F(Obj, VertexWithSeveralNormalsGetsTheirMeanDirection) {
   const auto mesh =
-      parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//2 2//2 4//2\n");
+      parsed_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//2 2//2 4//2\n");
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_NEAR(glm::distance(mesh->normals[0], glm::normalize(glm::vec3(0, 1, 1))), 0.0f, 1e-6f);
   EXPECT_EQ(mesh->normals[2], glm::vec3(0, 0, 1));
@@ -53,14 +53,14 @@ TEST_F(Obj, VertexWithSeveralNormalsGetsTheirMeanDirection) {
 
 TEST_F(Obj, LiesAreRefusedWithTheLineNumber) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_THAT(parse(three + "f 1 2 4\n").error().message, HasSubstr("names vertex 4, but there are 3"));
-  EXPECT_THAT(parse(three + "f 1 2 0\n").error().message, HasSubstr("line 4"));
-  EXPECT_THAT(parse(three + "f 1 2 -4\n").error().message, HasSubstr("vertex numbers that exist"));
-  EXPECT_THAT(parse(three + "f 1 2\n").error().message, HasSubstr("at least 3 corners"));
-  EXPECT_THAT(parse(three + "f 1//9 2//9 3//9\n").error().message, HasSubstr("normal 9"));
-  EXPECT_THAT(parse("v 0 nan 0\n").error().message, HasSubstr("finite"));
-  EXPECT_THAT(parse("v 0 0\n").error().message, HasSubstr("3 coordinates"));
-  EXPECT_THAT(parse("# " + std::string(2 << 20, 'x')).error().message, HasSubstr("1 MiB"));
+  EXPECT_THAT(parsed_obj(three + "f 1 2 4\n").error().message, HasSubstr("names vertex 4, but there are 3"));
+  EXPECT_THAT(parsed_obj(three + "f 1 2 0\n").error().message, HasSubstr("line 4"));
+  EXPECT_THAT(parsed_obj(three + "f 1 2 -4\n").error().message, HasSubstr("vertex numbers that exist"));
+  EXPECT_THAT(parsed_obj(three + "f 1 2\n").error().message, HasSubstr("at least 3 corners"));
+  EXPECT_THAT(parsed_obj(three + "f 1//9 2//9 3//9\n").error().message, HasSubstr("normal 9"));
+  EXPECT_THAT(parsed_obj("v 0 nan 0\n").error().message, HasSubstr("finite"));
+  EXPECT_THAT(parsed_obj("v 0 0\n").error().message, HasSubstr("3 coordinates"));
+  EXPECT_THAT(parsed_obj("# " + std::string(2 << 20, 'x')).error().message, HasSubstr("1 MiB"));
 }
 
 }  // namespace

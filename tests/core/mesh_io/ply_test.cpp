@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 
 class Ply : public FileTest {};
 
-Result<TriMesh> parse(const std::string& bytes) {
+Result<TriMesh> parsed_ply(const std::string& bytes) {
   SilentProgress progress;
   return parse_ply(bytes, progress);
 }
@@ -142,7 +142,7 @@ TEST_F(Ply, AllEncodingsOfOneTriangleReadTheSame) {
   vertex(4.0, 5, 2, 6.0f, 0, 0);
   vertex(7.0, 8, 1, 10.0f, 0, 0);
   for (const std::string& bytes : {ascii, little, big}) {
-    const auto mesh = parse(bytes);
+    const auto mesh = parsed_ply(bytes);
     ASSERT_TRUE(mesh) << mesh.error().message;
     ASSERT_EQ(mesh->positions.size(), 3u);
     EXPECT_EQ(mesh->positions[0], glm::vec3(-2.0f, 2.25f, 1.5f));
@@ -156,7 +156,7 @@ TEST_F(Ply, AllEncodingsOfOneTriangleReadTheSame) {
 
 TEST_F(Ply, LiesAreRefusedWithASentence) {
   const auto says = [](const std::string& bytes) {
-    const auto mesh = parse(bytes);
+    const auto mesh = parsed_ply(bytes);
     if (mesh) return std::string("accepted");
     EXPECT_EQ(mesh.error().kind, ErrorKind::kBadData);
     return mesh.error().message;
@@ -193,7 +193,7 @@ TEST_F(Ply, LiesAreRefusedWithASentence) {
 }
 
 TEST_F(Ply, ColoursThatAreNoNumbersAreDark) {
-  const auto mesh = parse(
+  const auto mesh = parsed_ply(
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
       "property float red\nproperty float green\nproperty float blue\nend_header\n"
       "0 0 0 nan -1 0.5\n0 0 0 inf -inf 1\n");
@@ -203,7 +203,7 @@ TEST_F(Ply, ColoursThatAreNoNumbersAreDark) {
 }
 
 TEST_F(Ply, FilesThatLabelVerticesOnlyAreReadAsTheirWriterMeantThem) {
-  const auto mesh = parse(
+  const auto mesh = parsed_ply(
       "ply\nformat ascii 1.0\ncomment made by dubsar\nelement vertex 4\nproperty float x\nproperty float y\n"
       "property float z\nproperty uchar partition\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0 1\n1 0 0 1\n1 1 0 2\n0 1 0 1\n3 0 1 3\n3 1 2 3\n");
@@ -217,7 +217,7 @@ TEST_F(Ply, PolygonsBecomeTrianglesThatCoverThem) {
       "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
       "2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n6 0 1 2 3 4 5\n4 5 0 1 2\n";
-  const auto mesh = parse(head);
+  const auto mesh = parsed_ply(head);
   ASSERT_TRUE(mesh) << mesh.error().message;
   ASSERT_EQ(mesh->triangles.size(), 6u);
   double area = 0.0;

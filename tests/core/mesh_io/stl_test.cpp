@@ -13,7 +13,7 @@ using ::testing::StartsWith;
 
 class Stl : public FileTest {};
 
-Result<TriMesh> parse(const std::string& bytes) {
+Result<TriMesh> parsed_stl(const std::string& bytes) {
   SilentProgress progress;
   return parse_stl(bytes, progress);
 }
@@ -72,7 +72,7 @@ TEST_F(Stl, UnknownVoxelSizeIsSaidInTheHeader) {
 TEST_F(Stl, AsciiWithSeveralSolidsIsRead) {
   const std::string facet =
       " facet normal nan 0 0\n outer loop\n vertex 0 0 0\n vertex +1.5 0 0\n vertex 0 1e0 -0\n endloop\n endfacet\n";
-  const auto mesh = parse("\n solid a b c\n" + facet + "endsolid a b c\nsolid\n" + facet + "endsolid\n");
+  const auto mesh = parsed_stl("\n solid a b c\n" + facet + "endsolid a b c\nsolid\n" + facet + "endsolid\n");
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_EQ(mesh->positions.size(), 3u) << "+0 and -0 are one coordinate";
   EXPECT_EQ(mesh->triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}}));
@@ -85,7 +85,7 @@ TEST_F(Stl, BinaryThatStartsWithSolidIsRead) {
   append_little(bytes, 1u);
   for (int i = 0; i < 12; ++i) append_little(bytes, static_cast<float>(i * i));
   append_little(bytes, std::uint16_t{0});
-  const auto mesh = parse(bytes);
+  const auto mesh = parsed_stl(bytes);
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_EQ(mesh->triangles.size(), 1u);
   EXPECT_EQ(mesh->positions[0], glm::vec3(9.0f, 16.0f, 25.0f));
@@ -94,12 +94,13 @@ TEST_F(Stl, BinaryThatStartsWithSolidIsRead) {
 TEST_F(Stl, LiesAreRefusedWithASentence) {
   std::string bytes(80, 'x');
   append_little(bytes, 0xFFFFFFFFu);
-  EXPECT_THAT(parse(bytes).error().message, HasSubstr("4294967295 triangles announced"));
-  EXPECT_THAT(parse("solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2").error().message,
+  EXPECT_THAT(parsed_stl(bytes).error().message, HasSubstr("4294967295 triangles announced"));
+  EXPECT_THAT(parsed_stl("solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2").error().message,
               HasSubstr("\"end of file\" found in triangle 0, expected a number"));
-  EXPECT_THAT(parse("solid a\nfacet normal 0 0 1\nouter loop\nvertex inf 2 3").error().message, HasSubstr("finite"));
-  EXPECT_THAT(parse("solid a\nbox").error().message, HasSubstr("expected \"facet\""));
-  EXPECT_THAT(parse("solid a\n").error().message, HasSubstr("end of file"));
+  EXPECT_THAT(parsed_stl("solid a\nfacet normal 0 0 1\nouter loop\nvertex inf 2 3").error().message,
+              HasSubstr("finite"));
+  EXPECT_THAT(parsed_stl("solid a\nbox").error().message, HasSubstr("expected \"facet\""));
+  EXPECT_THAT(parsed_stl("solid a\n").error().message, HasSubstr("end of file"));
 }
 
 }  // namespace

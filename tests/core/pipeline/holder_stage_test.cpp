@@ -15,12 +15,12 @@ namespace dubsar {
 namespace {
 namespace fs = std::filesystem;
 
-struct Answer {
+struct HeldAnswer {
   PipelineReport report;
   std::map<std::string, double> volumes;
 };
 
-Answer answer(double holder, Artefacts artefacts = Artefacts::kAuto) {
+HeldAnswer held_answer(double holder, Artefacts artefacts = Artefacts::kAuto) {
   const fs::path path = fs::temp_directory_path() / fmt::format("dubsar_holder_{}.h5", ::getpid());
   phantom::PhantomOptions wanted;
   wanted.dims = {128, 88, 128};
@@ -36,7 +36,7 @@ Answer answer(double holder, Artefacts artefacts = Artefacts::kAuto) {
   auto result = run_pipeline(options, progress);
   fs::remove(path);
   EXPECT_TRUE(result) << result.error().message;
-  Answer found;
+  HeldAnswer found;
   if (!result) return found;
   found.report = result->report;
   for (const Partition& part : found.report.partitions) found.volumes[part.name] += part.volume_mm3;
@@ -44,7 +44,7 @@ Answer answer(double holder, Artefacts artefacts = Artefacts::kAuto) {
 }
 
 TEST(HolderStage, WhatTheObjectStandsInIsTakenOffAndSaid) {
-  const Answer plain = answer(0.0), held = answer(0.6), as_it_is = answer(0.6, Artefacts::kOff);
+  const HeldAnswer plain = held_answer(0.0), held = held_answer(0.6), as_it_is = held_answer(0.6, Artefacts::kOff);
   EXPECT_FALSE(plain.report.scan.holder.has_value());
   ASSERT_TRUE(held.report.scan.holder.has_value());
   EXPECT_EQ(held.report.scan.holder->fate, HolderFate::kTakenOff);

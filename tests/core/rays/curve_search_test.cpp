@@ -12,7 +12,7 @@
 namespace dubsar {
 namespace {
 
-constexpr Dims kDims{104, 72, 48};
+constexpr Dims kSearchedDims{104, 72, 48};
 constexpr double kAbsorbed = 0.045;  // 3.9 along the longest way
 
 test::Scanner scanner_with(double scatter) {
@@ -29,7 +29,7 @@ CurveSearch search(const Volume<float>& volume) {
 
 TEST(CurveSearch, FindsTheCurveOfScatterWithoutGeometry) {
   for (const double scatter : {0.03, 0.08}) {
-    const CurveSearch found = search(test::scan(test::tablet_in_envelope(1.0), kDims, scanner_with(scatter)));
+    const CurveSearch found = search(test::scan(test::tablet_in_envelope(1.0), kSearchedDims, scanner_with(scatter)));
     ASSERT_TRUE(found.found) << scatter;
     EXPECT_EQ(found.found->axis, TurnAxis::kZ);
     const RayCurve& curve = found.found->curve;
@@ -42,7 +42,7 @@ TEST(CurveSearch, FindsTheCurveOfScatterWithoutGeometry) {
 }
 
 TEST(CurveSearch, LeavesStraightRaysAlone) {
-  const CurveSearch found = search(test::scan(test::tablet_in_envelope(1.0), kDims, scanner_with(0.0)));
+  const CurveSearch found = search(test::scan(test::tablet_in_envelope(1.0), kSearchedDims, scanner_with(0.0)));
   EXPECT_FALSE(found.found) << found.found->bend();
   EXPECT_EQ(found.trials.size(), 3u);
 }
@@ -91,7 +91,7 @@ TEST(CurveSearch, NoiseOfASmallBodyBendsNoRays) {
 
 // What a curve takes away is measured with its error, and noise makes that larger, not the gain.
 TEST(CurveSearch, ACurveIsJudgedInPlanesThatItWasNotFittedIn) {
-  const CurveSearch found = search(test::scan(test::tablet_in_envelope(1.0), kDims, scanner_with(0.08)));
+  const CurveSearch found = search(test::scan(test::tablet_in_envelope(1.0), kSearchedDims, scanner_with(0.08)));
   ASSERT_TRUE(found.found);
   const Elsewhere& elsewhere = found.found->elsewhere;
   EXPECT_TRUE(elsewhere.sure());
@@ -100,13 +100,15 @@ TEST(CurveSearch, ACurveIsJudgedInPlanesThatItWasNotFittedIn) {
 }
 
 TEST(CurveSearch, FindsTheAxisOfAScanThatLiesOnItsSide) {
-  const Volume<float> upright = test::scan(test::tablet_in_envelope(1.0), kDims, scanner_with(0.08));
+  const Volume<float> upright = test::scan(test::tablet_in_envelope(1.0), kSearchedDims, scanner_with(0.08));
   for (const TurnAxis axis : {TurnAxis::kX, TurnAxis::kY}) {
     const bool x = axis == TurnAxis::kX;
-    Volume<float> lying(x ? Dims{kDims.z, kDims.x, kDims.y} : Dims{kDims.y, kDims.z, kDims.x});
-    for (std::int64_t k = 0; k < kDims.z; ++k)
-      for (std::int64_t j = 0; j < kDims.y; ++j)
-        for (std::int64_t i = 0; i < kDims.x; ++i) (x ? lying.at(k, i, j) : lying.at(j, k, i)) = upright.at(i, j, k);
+    Volume<float> lying(x ? Dims{kSearchedDims.z, kSearchedDims.x, kSearchedDims.y}
+                          : Dims{kSearchedDims.y, kSearchedDims.z, kSearchedDims.x});
+    for (std::int64_t k = 0; k < kSearchedDims.z; ++k)
+      for (std::int64_t j = 0; j < kSearchedDims.y; ++j)
+        for (std::int64_t i = 0; i < kSearchedDims.x; ++i)
+          (x ? lying.at(k, i, j) : lying.at(j, k, i)) = upright.at(i, j, k);
     const CurveSearch found = search(lying);
     ASSERT_TRUE(found.found);
     EXPECT_EQ(found.found->axis, axis);
@@ -114,7 +116,7 @@ TEST(CurveSearch, FindsTheAxisOfAScanThatLiesOnItsSide) {
 }
 
 TEST(CurveSearch, GreysMayHaveAnyUnitAndZero) {
-  Volume<float> volume = test::scan(test::tablet_in_envelope(1.0), kDims, scanner_with(0.08));
+  Volume<float> volume = test::scan(test::tablet_in_envelope(1.0), kSearchedDims, scanner_with(0.08));
   const CurveSearch plain = search(volume);
   for (float& value : volume.voxels.span()) value = 250.0F * value - 1000.0F;
   const CurveSearch scaled = search(volume);

@@ -10,8 +10,8 @@
 namespace dubsar {
 namespace {
 
-constexpr Dims kDims{104, 72, 36};
-constexpr double kScatter = 0.08, kAbsorbed = 0.045;
+constexpr Dims kBentDims{104, 72, 36};
+constexpr double kScatter = 0.08, kBentAbsorbed = 0.045;
 
 struct Scene {
   Volume<float> straight, bent;
@@ -22,9 +22,9 @@ const Scene& scene() {
     test::Scanner scanner;
     const auto object = test::tablet_in_envelope(1.0);
     Scene made;
-    made.straight = test::scan(object, kDims, scanner);
-    scanner.recorded = test::scattering(kScatter, kAbsorbed);
-    made.bent = test::scan(object, kDims, scanner);
+    made.straight = test::scan(object, kBentDims, scanner);
+    scanner.recorded = test::scattering(kScatter, kBentAbsorbed);
+    made.bent = test::scan(object, kBentDims, scanner);
     return made;
   }();
   return both;
@@ -71,7 +71,7 @@ TEST(Straighten, EdgesOnLongRaysGetTheirContrastBack) {
   ASSERT_TRUE(straighten(grid, options_for(scene().bent), progress));
   const Volume<float> done = grid.take_volume();
   const auto edge = [](const Volume<float>& v) {
-    const std::int64_t z = kDims.z / 2, x = kDims.x / 2;
+    const std::int64_t z = kBentDims.z / 2, x = kBentDims.x / 2;
     float gap = 1e9F, clay = 0.0F;
     for (std::int64_t y = 46; y < 54; ++y) gap = std::min(gap, v.at(x, y, z));
     for (std::int64_t y = 40; y < 46; ++y) clay += v.at(x, y, z) / 6.0F;
@@ -84,9 +84,9 @@ TEST(Straighten, EdgesOnLongRaysGetTheirContrastBack) {
 // A curve of lengths alone cannot: behind the middle of the object there is more scatter than at its rim.
 TEST(Straighten, GivesBackWhatScatterTookThatVariesOverTheDetector) {
   test::Scanner scanner;
-  scanner.absorbed = kAbsorbed;
+  scanner.absorbed = kBentAbsorbed;
   scanner.stray = 0.15;
-  const Volume<float> bent = test::scan(test::tablet_in_envelope(1.0), kDims, scanner);
+  const Volume<float> bent = test::scan(test::tablet_in_envelope(1.0), kBentDims, scanner);
   StraightenOptions options = options_for(bent);
   ASSERT_TRUE(options.stray);
   EXPECT_NEAR(options.stray->spread(), scanner.spread, 0.4 * scanner.spread);
@@ -102,7 +102,7 @@ TEST(Straighten, GivesBackWhatScatterTookThatVariesOverTheDetector) {
 TEST(Straighten, AnAxisThatWasOffIsFoundAboutTheRightAxisOnly) {
   test::Scanner scanner;
   scanner.axis_off = 0.5;
-  GridStore off(test::scan(test::tablet_in_envelope(1.0), kDims, scanner));
+  GridStore off(test::scan(test::tablet_in_envelope(1.0), kBentDims, scanner));
   const auto shift_about = [](GridStore& grid, TurnAxis axis) {
     return find_shift_in(grid, {axis, {0.0, 1.0}, {{1.0}, 100.0}})->pixels;
   };
@@ -118,25 +118,25 @@ TEST(Straighten, AStraightCurveChangesNoBit) {
   SilentProgress progress;
   ASSERT_TRUE(straighten(grid, {TurnAxis::kZ, {0.0, 1.0}, {{1.0}, 100.0}}, progress));
   const Volume<float> done = grid.take_volume();
-  for (std::int64_t i = 0; i < kDims.count(); ++i) ASSERT_EQ(done.voxels[i], scene().straight.voxels[i]);
+  for (std::int64_t i = 0; i < kBentDims.count(); ++i) ASSERT_EQ(done.voxels[i], scene().straight.voxels[i]);
 }
 
 TEST(Straighten, MemoryAndDiskGiveTheSameBits) {
   const StraightenOptions options = options_for(scene().bent);
   SilentProgress progress;
   GridStore memory(copy_of(scene().bent));
-  GridStore disk = *GridStore::create(kDims, {}, GridPlace::kScratch, {});
-  for (std::int64_t z = 0; z < kDims.z; ++z) {
+  GridStore disk = *GridStore::create(kBentDims, {}, GridPlace::kScratch, {});
+  for (std::int64_t z = 0; z < kBentDims.z; ++z) {
     const std::span<float> page = disk.page(z, z + 1);
-    std::copy(scene().bent.row(0, z), scene().bent.row(0, z) + kDims.slice(), page.begin());
+    std::copy(scene().bent.row(0, z), scene().bent.row(0, z) + kBentDims.slice(), page.begin());
     ASSERT_TRUE(disk.store(z, z + 1));
   }
   ASSERT_TRUE(straighten(memory, options, progress));
   ASSERT_TRUE(straighten(disk, options, progress));
-  Volume<float> a(kDims), b(kDims);
-  ASSERT_TRUE(memory.read(0, kDims.z, a.voxels.span()));
-  ASSERT_TRUE(disk.read(0, kDims.z, b.voxels.span()));
-  for (std::int64_t i = 0; i < kDims.count(); ++i) ASSERT_EQ(a.voxels[i], b.voxels[i]);
+  Volume<float> a(kBentDims), b(kBentDims);
+  ASSERT_TRUE(memory.read(0, kBentDims.z, a.voxels.span()));
+  ASSERT_TRUE(disk.read(0, kBentDims.z, b.voxels.span()));
+  for (std::int64_t i = 0; i < kBentDims.count(); ++i) ASSERT_EQ(a.voxels[i], b.voxels[i]);
   const auto refused = straighten(disk, {TurnAxis::kX, options.levels, options.curve}, progress);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kTryAgain);

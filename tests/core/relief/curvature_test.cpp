@@ -10,6 +10,7 @@
 #include "core/relief/curvature/shape_class.h"
 #include "core/relief/smoothing/smooth.h"
 #include "tests/core/mesh/shape_meshes.h"
+#include "tests/core/relief/normals_of.h"
 
 namespace dubsar {
 namespace {
@@ -22,8 +23,6 @@ Curvatures curvatures(const QuadMesh& mesh, const std::vector<glm::vec3>& normal
   EXPECT_TRUE(result);
   return std::move(*result);
 }
-
-std::vector<glm::vec3> normals_of(const QuadMesh& mesh) { return vertex_normals(mesh, face_normals(mesh)); }
 
 QuadMesh turned_inside_out(QuadMesh mesh) {
   for (auto& q : mesh.quads) std::swap(q[1], q[3]);

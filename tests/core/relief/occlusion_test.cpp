@@ -13,12 +13,11 @@
 #include "core/base/system/parallel.h"
 #include "core/relief/smoothing/smooth.h"
 #include "tests/core/mesh/shape_meshes.h"
+#include "tests/core/relief/normals_of.h"
 
 namespace dubsar {
 namespace {
 using namespace test;
-
-std::vector<glm::vec3> normals_of(const QuadMesh& mesh) { return vertex_normals(mesh, face_normals(mesh)); }
 
 std::vector<float> light(const QuadMesh& mesh, const OcclusionOptions& options = {},
                          const std::vector<PartitionId>& bodies = {}) {

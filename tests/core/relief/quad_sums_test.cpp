@@ -21,6 +21,7 @@
 #include "core/relief/smoothing/scatter_blocks.h"
 #include "core/relief/smoothing/smooth.h"
 #include "tests/core/extract/random_volume.h"
+#include "tests/core/relief/same_bytes.h"
 
 namespace dubsar {
 namespace {
@@ -44,11 +45,6 @@ std::vector<QuadMesh> meshes() {
   for (int kind = 0; kind < 5; ++kind)
     all.push_back(noise_mesh({17, 16, 15}, 30u + unsigned(kind), kind, kind % 2 == 0));
   return all;
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 TEST(QuadSums, FacesAreNewellsAndVerticesTheirWeightedMean) {
@@ -203,9 +199,9 @@ TEST(QuadSums, AreTheSameForAnyVectorUnitAndAnyNumberOfThreads) {
   const QuadMesh& mesh = large_mesh();
   const Relief first = relief_of(mesh);
   const auto expect_same = [&](const Relief& other, const std::string& what) {
-    EXPECT_TRUE(same_bytes(other.normals, first.normals)) << what;
-    EXPECT_TRUE(same_bytes(other.k.k_min, first.k.k_min)) << what;
-    EXPECT_TRUE(same_bytes(other.k.k_max, first.k.k_max)) << what;
+    EXPECT_TRUE(test::same_bytes(other.normals, first.normals)) << what;
+    EXPECT_TRUE(test::same_bytes(other.k.k_min, first.k.k_min)) << what;
+    EXPECT_TRUE(test::same_bytes(other.k.k_max, first.k.k_max)) << what;
   };
   for (const int threads : {1, 2, 5}) {
     set_thread_count(threads);
@@ -229,7 +225,7 @@ TEST(QuadSums, NormalsDoNotDependOnTheSizeOfBlocks) {
     set_thread_count(threads);
     const Relief relief = relief_of(mesh);
     if (first.empty()) first = relief.normals;
-    EXPECT_TRUE(same_bytes(relief.normals, first)) << threads;
+    EXPECT_TRUE(test::same_bytes(relief.normals, first)) << threads;
   }
   set_thread_count(0);
 }

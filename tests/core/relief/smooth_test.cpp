@@ -10,6 +10,7 @@
 
 #include "core/base/system/parallel.h"
 #include "tests/core/mesh/shape_meshes.h"
+#include "tests/core/relief/same_bytes.h"
 
 namespace dubsar {
 namespace {
@@ -18,11 +19,6 @@ using namespace test;
 double angle_deg(glm::vec3 a, glm::vec3 b) {
   return std::atan2(static_cast<double>(glm::length(glm::cross(a, b))), static_cast<double>(glm::dot(a, b))) * 180 /
          kPi;
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 QuadMesh quantised_sphere(int n, double radius, int bits) {
@@ -129,7 +125,7 @@ TEST(NormalFilter, SameBytesOnEveryInstructionSet) {
     std::vector<glm::vec4> faces = face_normals(mesh);
     ASSERT_TRUE(filter_normals(*neighbours, {}, faces, progress));
     if (first.empty()) first = faces;
-    EXPECT_TRUE(same_bytes(faces, first)) << hwy::TargetName(target);
+    EXPECT_TRUE(test::same_bytes(faces, first)) << hwy::TargetName(target);
     ++targets;
   }
   hwy::SetSupportedTargetsForTest(0);
@@ -291,8 +287,8 @@ TEST(Smooth, SameBytesForOneTwoAndSevenThreads) {
       first_positions = mesh.positions;
       first_normals = normals;
     }
-    EXPECT_TRUE(same_bytes(mesh.positions, first_positions)) << threads;
-    EXPECT_TRUE(same_bytes(normals, first_normals)) << threads;
+    EXPECT_TRUE(test::same_bytes(mesh.positions, first_positions)) << threads;
+    EXPECT_TRUE(test::same_bytes(normals, first_normals)) << threads;
   }
   set_thread_count(0);
 }
@@ -320,7 +316,7 @@ TEST(Smooth, CancelLeavesTheMeshAsItWas) {
   const auto stats = smooth(mesh, normals, {}, progress);
   ASSERT_FALSE(stats);
   EXPECT_EQ(stats.error().kind, ErrorKind::kCancelled);
-  EXPECT_TRUE(same_bytes(mesh.positions, start.positions));
+  EXPECT_TRUE(test::same_bytes(mesh.positions, start.positions));
   EXPECT_TRUE(normals.empty());
 }
 

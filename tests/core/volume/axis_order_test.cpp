@@ -11,12 +11,13 @@
 #include <random>
 
 #include "core/volume/formats/import.h"
+#include "tests/core/volume/gzip.h"
 #include "tests/core/volume/hdf5_fixture.h"
 #include "tests/core/volume/temp_folder.h"
 
 namespace dubsar {
 namespace {
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using testing_tools::Hdf5Fixture;
 using testing_tools::Packing;
 using testing_tools::Shape;
@@ -64,20 +65,6 @@ Stored store(const AxisOrder& order) {
 std::string bytes_of_floats(const std::vector<double>& values) {
   const std::vector<float> floats(values.begin(), values.end());
   return {reinterpret_cast<const char*>(floats.data()), floats.size() * sizeof(float)};
-}
-
-std::string gzip(const std::string& plain) {
-  std::string packed(plain.size() + 1024, '\0'), input = plain;
-  z_stream stream{};
-  deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-  stream.next_in = reinterpret_cast<Bytef*>(input.data());
-  stream.avail_in = static_cast<uInt>(input.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  deflate(&stream, Z_FINISH);
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return packed;
 }
 
 class AxisOrders : public testing_tools::TempFolder {
@@ -303,7 +290,7 @@ TEST_F(AxisOrders, NrrdDirectionsShowTheSameObject) {
                                               "encoding: {}\nspace: {}\nspace directions: {}\n\n",
                                               stored.shape[2], stored.shape[1], stored.shape[0],
                                               packed ? "gzip" : "raw", space, fmt::join(directions, " ")) +
-                                      (packed ? gzip(bytes) : bytes));
+                                      (packed ? testing_tools::gzip(bytes) : bytes));
         const auto volume = open(in("a.nrrd"));
         expect_object(volume, fmt::format("{} {}", space, order.letters()));
         EXPECT_EQ((*volume)->info().axes.mirrored_as_stored(), order.mirrored_as_stored());

@@ -14,7 +14,7 @@ namespace dubsar {
 namespace {
 namespace fs = std::filesystem;
 
-const Dims kDims{37, 19, 23};
+const Dims kGridDims{37, 19, 23};
 
 float value_at(std::int64_t i, int round) {
   return static_cast<float>(i * 7 % 1009) + 1000.0F * static_cast<float>(round);
@@ -29,26 +29,26 @@ Budget in_folder() {
 void fill(GridStore& grid, std::int64_t begin, std::int64_t end, int round) {
   const std::span<float> page = grid.page(begin, end);
   for (std::size_t i = 0; i < page.size(); ++i)
-    page[i] = value_at(begin * kDims.slice() + static_cast<std::int64_t>(i), round);
+    page[i] = value_at(begin * kGridDims.slice() + static_cast<std::int64_t>(i), round);
   ASSERT_TRUE(grid.store(begin, end));
 }
 
 TEST(GridStore, MemoryAndDiskGiveBackWhatWasWrittenLast) {
   for (const GridPlace place : {GridPlace::kMemory, GridPlace::kScratch}) {
-    auto grid = GridStore::create(kDims, {}, place, in_folder());
+    auto grid = GridStore::create(kGridDims, {}, place, in_folder());
     ASSERT_TRUE(grid) << grid.error().message;
     EXPECT_EQ(grid->in_memory(), place == GridPlace::kMemory);
-    EXPECT_EQ(grid->scratch_bytes(), place == GridPlace::kMemory ? 0 : kDims.count() * 4);
+    EXPECT_EQ(grid->scratch_bytes(), place == GridPlace::kMemory ? 0 : kGridDims.count() * 4);
     fill(*grid, 11, 23, 0);
     fill(*grid, 0, 11, 0);
     fill(*grid, 5, 9, 1);
-    std::vector<float> all(static_cast<std::size_t>(kDims.count()));
+    std::vector<float> all(static_cast<std::size_t>(kGridDims.count()));
     for (const std::int64_t height : {1, 3, 23})
-      for (std::int64_t z = 0; z < kDims.z; z += height) {
-        const std::int64_t end = std::min(kDims.z, z + height);
-        ASSERT_TRUE(grid->read(z, end, std::span(all).subspan(static_cast<std::size_t>(z * kDims.slice()))));
-        for (std::int64_t i = z * kDims.slice(); i < end * kDims.slice(); ++i) {
-          const std::int64_t slice = i / kDims.slice();
+      for (std::int64_t z = 0; z < kGridDims.z; z += height) {
+        const std::int64_t end = std::min(kGridDims.z, z + height);
+        ASSERT_TRUE(grid->read(z, end, std::span(all).subspan(static_cast<std::size_t>(z * kGridDims.slice()))));
+        for (std::int64_t i = z * kGridDims.slice(); i < end * kGridDims.slice(); ++i) {
+          const std::int64_t slice = i / kGridDims.slice();
           ASSERT_EQ(all[static_cast<std::size_t>(i)], value_at(i, slice >= 5 && slice < 9 ? 1 : 0));
         }
       }
@@ -71,17 +71,17 @@ TEST(GridStore, ABitThatTheDiskChangedIsAnErrorAndNoSurface) {
   fs::create_directories(folder);
   Budget budget;
   budget.scratch_folder = folder;
-  auto grid = GridStore::create(kDims, {}, GridPlace::kScratch, budget);
+  auto grid = GridStore::create(kGridDims, {}, GridPlace::kScratch, budget);
   ASSERT_TRUE(grid);
-  fill(*grid, 0, kDims.z, 0);
+  fill(*grid, 0, kGridDims.z, 0);
   const int file = nameless_file(folder);
   ASSERT_GE(file, 0);
-  const ::off_t at = 4 * (9 * kDims.slice() + 5);
+  const ::off_t at = 4 * (9 * kGridDims.slice() + 5);
   char byte = 0;
   ASSERT_EQ(::pread(file, &byte, 1, at), 1);
   byte ^= 4;
   ASSERT_EQ(::pwrite(file, &byte, 1, at), 1);
-  std::vector<float> slab(static_cast<std::size_t>(3 * kDims.slice()));
+  std::vector<float> slab(static_cast<std::size_t>(3 * kGridDims.slice()));
   EXPECT_TRUE(grid->read(6, 9, slab));
   const auto damaged = grid->read(8, 11, slab);
   ASSERT_FALSE(damaged);
@@ -100,10 +100,10 @@ TEST(GridStore, ADiskWithoutRoomIsRefusedBeforeAnythingIsWritten) {
 
 TEST(GridStore, AGridGoesToTheDiskWhereItWouldTakeMostOfTheBudget) {
   Budget budget;
-  budget.memory_bytes = static_cast<std::uint64_t>(kDims.count()) * 4 * 2;
-  EXPECT_EQ(place_for(kDims, budget), GridPlace::kMemory);
-  budget.memory_bytes = static_cast<std::uint64_t>(kDims.count()) * 4 + 1000;
-  EXPECT_EQ(place_for(kDims, budget), GridPlace::kScratch);
+  budget.memory_bytes = static_cast<std::uint64_t>(kGridDims.count()) * 4 * 2;
+  EXPECT_EQ(place_for(kGridDims, budget), GridPlace::kMemory);
+  budget.memory_bytes = static_cast<std::uint64_t>(kGridDims.count()) * 4 + 1000;
+  EXPECT_EQ(place_for(kGridDims, budget), GridPlace::kScratch);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace dubsar {
 namespace {
 namespace fs = std::filesystem;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class ImportChanges : public testing_tools::TempFolder {
  protected:

@@ -11,20 +11,21 @@
 
 #include "core/volume/formats/import.h"
 #include "tests/core/image_io/tiff_fixture.h"
+#include "tests/core/volume/gzip.h"
 #include "tests/core/volume/temp_folder.h"
 
 namespace dubsar {
 namespace {
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using testing_tools::TiffFixture;
 
-constexpr Dims kDims{6, 5, 4};
+constexpr Dims kPictureDims{6, 5, 4};
 
 // The volume 3 * i - 7 in a type and byte order.
 template <class T>
 std::string stored(bool big_endian) {
   std::string bytes;
-  for (int i = 0; i < kDims.count(); ++i) {
+  for (int i = 0; i < kPictureDims.count(); ++i) {
     const T value = static_cast<T>(3 * i - 7 * (std::is_signed_v<T> ? 1 : 0));
     std::array<char, sizeof(T)> raw{};
     std::memcpy(raw.data(), &value, sizeof(T));
@@ -32,21 +33,6 @@ std::string stored(bool big_endian) {
     bytes.append(raw.begin(), raw.end());
   }
   return bytes;
-}
-
-std::string gzip(const std::string& plain) {
-  std::string packed(plain.size() + 1024, '\0');
-  z_stream stream{};
-  deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-  std::string input = plain;
-  stream.next_in = reinterpret_cast<Bytef*>(input.data());
-  stream.avail_in = static_cast<uInt>(input.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  deflate(&stream, Z_FINISH);
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return packed;
 }
 
 class ImportFormats : public testing_tools::TempFolder {
@@ -64,15 +50,15 @@ class ImportFormats : public testing_tools::TempFolder {
   }
   static void expect_ramp(Result<std::unique_ptr<ImportedVolume>> volume, int first, const std::string& what) {
     ASSERT_TRUE(volume) << what << ": " << volume.error().message;
-    ASSERT_EQ((*volume)->dims(), kDims) << what;
-    std::vector<float> out(static_cast<std::size_t>(kDims.count()));
+    ASSERT_EQ((*volume)->dims(), kPictureDims) << what;
+    std::vector<float> out(static_cast<std::size_t>(kPictureDims.count()));
     for (const std::int64_t z : {2, 0, 3, 1}) {  // any order
-      const auto read = (*volume)->read(
-          z, z + 1,
-          std::span(out).subspan(static_cast<std::size_t>(z * kDims.slice()), static_cast<std::size_t>(kDims.slice())));
+      const auto read = (*volume)->read(z, z + 1,
+                                        std::span(out).subspan(static_cast<std::size_t>(z * kPictureDims.slice()),
+                                                               static_cast<std::size_t>(kPictureDims.slice())));
       ASSERT_TRUE(read) << what << ": " << read.error().message;
     }
-    for (int i = 0; i < kDims.count(); ++i)
+    for (int i = 0; i < kPictureDims.count(); ++i)
       ASSERT_EQ(out[static_cast<std::size_t>(i)], static_cast<float>(3 * i + first)) << what;
   }
   static std::string warnings(const ImportedVolume& volume) {
@@ -124,7 +110,8 @@ TEST_F(ImportFormats, NrrdRawAndGzipAreRead) {
     const char* const order = big ? "big" : "little";
     write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "short", order, "raw", "") + stored<std::int16_t>(big));
     expect_ramp(open("a.nrrd"), -7, "raw");
-    write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "float", order, "gzip", "") + gzip(stored<float>(big)));
+    write_bytes(in("a.nrrd"),
+                fmt::format(fmt::runtime(kNrrd), "float", order, "gzip", "") + testing_tools::gzip(stored<float>(big)));
     expect_ramp(open("a.nrrd"), -7, "gzip");
   }
   write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "double", "little", "raw", "byte skip: 5\n") + "12345" +
@@ -183,11 +170,11 @@ TEST_F(ImportFormats, NrrdThatIsNoVolumeIsRefused) {
 TEST_F(ImportFormats, EveryNrrdTruncationIsRefused) {
   for (const bool packed : {false, true}) {
     const std::string bytes = fmt::format(fmt::runtime(kNrrd), "short", "little", packed ? "gzip" : "raw", "") +
-                              (packed ? gzip(stored<std::int16_t>(false)) : stored<std::int16_t>(false));
+                              (packed ? testing_tools::gzip(stored<std::int16_t>(false)) : stored<std::int16_t>(false));
     for (std::size_t length = 0; length + 9 < bytes.size(); ++length) {  // the last 8 bytes of gzip are its checksum
       write_bytes(in("a.nrrd"), bytes.substr(0, length));
       const auto volume = open("a.nrrd");
-      std::vector<float> out(static_cast<std::size_t>(kDims.count()));
+      std::vector<float> out(static_cast<std::size_t>(kPictureDims.count()));
       const auto read = volume ? (*volume)->read(0, 4, out) : tl::unexpected<Error>(volume.error());
       ASSERT_FALSE(read) << length << " of " << bytes.size();
       EXPECT_EQ(read.error().kind, ErrorKind::kBadData);
@@ -196,9 +183,10 @@ TEST_F(ImportFormats, EveryNrrdTruncationIsRefused) {
 }
 
 std::vector<std::vector<std::uint64_t>> pages_of(int first) {
-  std::vector<std::vector<std::uint64_t>> pages(static_cast<std::size_t>(kDims.z));
-  for (int i = 0; i < kDims.count(); ++i)
-    pages[static_cast<std::size_t>(i / kDims.slice())].push_back(static_cast<std::uint64_t>(3 * i + first) & 0xffff);
+  std::vector<std::vector<std::uint64_t>> pages(static_cast<std::size_t>(kPictureDims.z));
+  for (int i = 0; i < kPictureDims.count(); ++i)
+    pages[static_cast<std::size_t>(i / kPictureDims.slice())].push_back(static_cast<std::uint64_t>(3 * i + first) &
+                                                                        0xffff);
   return pages;
 }
 
@@ -282,7 +270,7 @@ TEST_F(ImportFormats, AnImagejStackBehindOnePageIsReadWhole) {
   TiffFixture fixture{.width = 6, .height = 5, .bits = 16, .big_endian = true};
   fixture.description = "ImageJ=1.53\nimages=4\nslices=4\n";
   const std::string all = stored<std::uint16_t>(true);
-  fixture.trailing = all.substr(2 * static_cast<std::size_t>(kDims.slice()));
+  fixture.trailing = all.substr(2 * static_cast<std::size_t>(kPictureDims.slice()));
   write_bytes(in("a.tif"), fixture.bytes({pages_of(0)[0]}));
   expect_ramp(open("a.tif"), 0, "ImageJ");
 }

@@ -14,7 +14,7 @@
 
 namespace dubsar {
 namespace {
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class ImportGrid : public testing_tools::TempFolder {
  protected:

@@ -14,7 +14,7 @@
 
 namespace dubsar {
 namespace {
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using testing_tools::Hdf5Fixture;
 using testing_tools::Packing;
 using testing_tools::Shape;

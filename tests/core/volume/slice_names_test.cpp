@@ -11,7 +11,7 @@
 
 namespace dubsar {
 namespace {
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 using Names = std::vector<std::string>;
 

@@ -8,7 +8,7 @@
 
 namespace dubsar {
 namespace {
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(TiffDescription, OmeSaysSizesAndWhatIsNoSlice) {
   const TiffDescription plain = parse_tiff_description(

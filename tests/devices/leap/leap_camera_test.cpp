@@ -9,9 +9,9 @@
 namespace dubsar {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-LeapCameraOptions quick() {
+LeapCameraOptions quick_camera() {
   LeapCameraOptions options;
   options.calibration_settle = milliseconds(0);
   options.exposure_us = 150;
@@ -23,7 +23,7 @@ TEST(LeapCamera, AsksTheDeviceWhatItIs) {
   Lmc1SimulatorOptions lmc1;
   lmc1.frame_limit = 1;
   Lmc1Simulator controller(lmc1);
-  auto camera = make_leap_camera([&] { return controller.open(); }, quick(), clock);
+  auto camera = make_leap_camera([&] { return controller.open(); }, quick_camera(), clock);
   EXPECT_FALSE(camera->calibration());
   ASSERT_TRUE(camera->start());
   EXPECT_EQ(camera->calibration(), lmc1.calibration);
@@ -37,7 +37,7 @@ TEST(LeapCamera, AsksTheDeviceWhatItIs) {
     device.product = product;
     device.stream.frame_limit = 1;
     RigelSimulator simulator(device);
-    camera = make_leap_camera([&] { return simulator.open(); }, quick(), clock);
+    camera = make_leap_camera([&] { return simulator.open(); }, quick_camera(), clock);
     const auto started = camera->start();
     ASSERT_TRUE(started) << started.error().message;
     EXPECT_EQ(camera->calibration(), device.calibration);
@@ -52,14 +52,14 @@ TEST(LeapCamera, OthersAreSentToTheServiceOrRefused) {
   RigelSimulatorOptions device;
   device.product = 0x1206;
   RigelSimulator controller_2(device);
-  auto started = make_leap_camera([&] { return controller_2.open(); }, quick(), clock)->start();
+  auto started = make_leap_camera([&] { return controller_2.open(); }, quick_camera(), clock)->start();
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().kind, ErrorKind::kUnavailable);
   EXPECT_THAT(started.error().message,
               testing::AllOf(HasSubstr("Leap Motion Controller 2"), HasSubstr("--input leapc")));
   device.product = 0x4711;
   RigelSimulator stranger(device);
-  started = make_leap_camera([&] { return stranger.open(); }, quick(), clock)->start();
+  started = make_leap_camera([&] { return stranger.open(); }, quick_camera(), clock)->start();
   ASSERT_FALSE(started);
   EXPECT_THAT(started.error().message, HasSubstr("2936:4711"));
 }

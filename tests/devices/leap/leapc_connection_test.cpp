@@ -15,7 +15,7 @@ namespace dubsar::leapc {
 namespace {
 
 using std::chrono::steady_clock;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class LeapcConnection : public testing::Test {
  protected:

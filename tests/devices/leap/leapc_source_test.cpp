@@ -14,7 +14,7 @@ namespace dubsar {
 namespace {
 
 using std::chrono::steady_clock;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 leapc::Hand decoded(const FakeHand& fake) { return *leapc::decode_hand(std::as_bytes(std::span(&fake, 1))); }
 

@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "devices/leap/lmc1_simulator.h"
+#include "tests/devices/leap/eventually.h"
+#include "tests/devices/leap/hand_above.h"
 #include "tests/devices/leap/one_kind.h"
 
 namespace dubsar {
@@ -13,26 +15,10 @@ namespace {
 
 using std::chrono::steady_clock;
 
-Lmc1Options quick() {
+Lmc1Options quick_lmc1() {
   Lmc1Options options;
   options.calibration_settle = milliseconds(0);
   return options;
-}
-
-template <class Condition>
-bool eventually(const Condition& condition) {
-  const auto until = steady_clock::now() + std::chrono::seconds(10);
-  while (steady_clock::now() < until) {
-    if (condition()) return true;
-    std::this_thread::yield();
-  }
-  return condition();
-}
-
-PosedHand hand_above() {
-  HandPose pose;
-  pose.palm.position_m = {0.0, 0.25, 0.0};
-  return pose_hand(pose);
 }
 
 std::ptrdiff_t threads_now() {
@@ -45,7 +31,7 @@ TEST(Lmc1Driver, DeliversTheFramesThatTheDeviceRendered) {
   device.hands = [](std::uint64_t) { return std::vector{hand_above()}; };
   Lmc1Simulator simulator(device);
   SteadyClock clock;
-  auto driver = lmc1_camera([&] { return simulator.open(); }, quick(), clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, quick_lmc1(), clock);
   ASSERT_TRUE(driver->start());
   EXPECT_EQ(driver->calibration(), device.calibration);
   EXPECT_TRUE(simulator.led_on(lmc1::Switch::kLedCentre));
@@ -99,7 +85,7 @@ TEST(Lmc1Driver, PausesWithinAFrameDoNotLoseIt) {
         DUBSAR_ASSIGN(auto opened, simulator.open());
         return std::make_unique<PausingTransport>(std::move(opened));
       },
-      quick(), clock);
+      quick_lmc1(), clock);
   ASSERT_TRUE(driver->start());
   Frame frame;
   ASSERT_TRUE(eventually([&] { return driver->poll(frame) && frame.sequence == 5; }))
@@ -112,7 +98,7 @@ TEST(Lmc1Driver, UnpluggedIsAStateAndReplugStartsAgain) {
   device.paced = true;
   Lmc1Simulator simulator(device);
   SteadyClock clock;
-  auto driver = lmc1_camera([&] { return simulator.open(); }, quick(), clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, quick_lmc1(), clock);
   ASSERT_TRUE(driver->start());
   Frame frame;
   ASSERT_TRUE(eventually([&] { return driver->poll(frame); }));
@@ -133,7 +119,7 @@ TEST(Lmc1Driver, HundredCyclesOfPlugAndUnplugLeaveNoThread) {
   SteadyClock clock;
   const auto before = threads_now();
   for (int i = 0; i < 100; ++i) {
-    auto driver = lmc1_camera([&] { return simulator.open(); }, quick(), clock);
+    auto driver = lmc1_camera([&] { return simulator.open(); }, quick_lmc1(), clock);
     ASSERT_TRUE(driver->start());
     simulator.unplug();
     if (i % 2 == 0) {
@@ -151,7 +137,7 @@ TEST(Lmc1Driver, ExposureAndDarkFramesAreTheDevices) {
   device.paced = true;
   Lmc1Simulator simulator(device);
   SteadyClock clock;
-  Lmc1Options options = quick();
+  Lmc1Options options = quick_lmc1();
   options.exposure_us = 333;
   options.dark_frame_interval = 2;
   auto driver = lmc1_camera([&] { return simulator.open(); }, options, clock);
@@ -168,7 +154,7 @@ TEST(Lmc1Driver, WithoutDarkFramesEveryFrameIsLitWhateverItsLabelIs) {
   std::vector<std::byte> bytes(std::size_t{640} * 240 * 2);
   lmc1::encode_metadata({200, 16, 1}, std::span(bytes).last<lmc1::kMetadataBytes>());
   for (const int interval : {0, 2}) {
-    Lmc1Options options = quick();
+    Lmc1Options options = quick_lmc1();
     options.dark_frame_interval = interval;
     const auto kind = lmc1_kind(options);
     Frame frame;
@@ -186,7 +172,7 @@ TEST(Lmc1Driver, ADeviceThatStallsItsCalibrationIsRefusedInOneSentence) {
   device.calibration.baseline_mm = 0.0F;
   Lmc1Simulator simulator(device);
   SteadyClock clock;
-  auto driver = lmc1_camera([&] { return simulator.open(); }, quick(), clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, quick_lmc1(), clock);
   const auto started = driver->start();
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().kind, ErrorKind::kBadData);
@@ -197,7 +183,7 @@ TEST(Lmc1Driver, ADeviceThatStallsItsCalibrationIsRefusedInOneSentence) {
 TEST(Lmc1Driver, UnknownModesAreRefused) {
   Lmc1Simulator simulator(Lmc1SimulatorOptions{});
   SteadyClock clock;
-  Lmc1Options options = quick();
+  Lmc1Options options = quick_lmc1();
   options.width = 320;
   auto driver = lmc1_camera([&] { return simulator.open(); }, options, clock);
   EXPECT_EQ(driver->start().error().kind, ErrorKind::kUsage);

@@ -9,13 +9,15 @@
 
 #include "devices/leap/rigel_simulator.h"
 #include "devices/leap/uvc_payload.h"
+#include "tests/devices/leap/eventually.h"
+#include "tests/devices/leap/hand_above.h"
 #include "tests/devices/leap/one_kind.h"
 
 namespace dubsar {
 namespace {
 
 using std::chrono::steady_clock;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr rigel::Units kUnits{0, 224, 2};
 
@@ -24,29 +26,13 @@ std::vector<std::byte> configuration() {
   return {bytes.begin(), bytes.end()};
 }
 
-template <class Condition>
-bool eventually(const Condition& condition) {
-  const auto until = steady_clock::now() + std::chrono::seconds(10);
-  while (steady_clock::now() < until) {
-    if (condition()) return true;
-    std::this_thread::yield();
-  }
-  return condition();
-}
-
-PosedHand hand_above(double x_m = 0.0) {
-  HandPose pose;
-  pose.palm.position_m = {x_m, 0.25, 0.0};
-  return pose_hand(pose);
-}
-
 RigelSimulatorOptions one_hand() {
   RigelSimulatorOptions device;
   device.hands = [](std::uint64_t) { return std::vector{hand_above()}; };
   return device;
 }
 
-RigelOptions quick() {
+RigelOptions quick_rigel() {
   RigelOptions options;
   options.height = 240;
   return options;
@@ -211,7 +197,7 @@ TEST(RigelDriver, DeliversThePicturesThatTheDeviceRendered) {
     device.payload_bytes = payload;
     RigelSimulator simulator(device);
     SteadyClock clock;
-    auto driver = rigel_camera([&] { return simulator.open(); }, quick(), clock);
+    auto driver = rigel_camera([&] { return simulator.open(); }, quick_rigel(), clock);
     const auto started = driver->start();
     ASSERT_TRUE(started) << started.error().message;
     EXPECT_EQ(driver->calibration(), device.calibration);
@@ -247,7 +233,7 @@ TEST(RigelDriver, ASir170WithoutTheEmbeddedLineWorksToo) {
   device.stream.frame_limit = 1;
   RigelSimulator simulator(device);
   SteadyClock clock;
-  RigelOptions options = quick();
+  RigelOptions options = quick_rigel();
   auto driver = rigel_camera([&] { return simulator.open(); }, options, clock);
   ASSERT_TRUE(driver->start());
   Frame frame;
@@ -261,7 +247,7 @@ TEST(RigelDriver, ExposureAndDarkFramesAreTheDevices) {
   device.stream.paced = true;
   RigelSimulator simulator(device);
   SteadyClock clock;
-  RigelOptions options = quick();
+  RigelOptions options = quick_rigel();
   options.exposure_us = 777;
   options.dark_frame_interval = 4;
   auto driver = rigel_camera([&] { return simulator.open(); }, options, clock);
@@ -272,7 +258,7 @@ TEST(RigelDriver, ExposureAndDarkFramesAreTheDevices) {
   EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && !frame.dark; }));
   options.exposure_us = 5000;
   EXPECT_FALSE(rigel_camera([&] { return simulator.open(); }, options, clock)->start());
-  options = quick();
+  options = quick_rigel();
   options.dark_frame_interval = 3;
   EXPECT_FALSE(rigel_camera([&] { return simulator.open(); }, options, clock)->start());
 }
@@ -282,7 +268,7 @@ TEST(RigelDriver, UnpluggedIsAStateAndReplugStartsAgain) {
   device.stream.paced = true;
   RigelSimulator simulator(device);
   SteadyClock clock;
-  auto driver = rigel_camera([&] { return simulator.open(); }, quick(), clock);
+  auto driver = rigel_camera([&] { return simulator.open(); }, quick_rigel(), clock);
   ASSERT_TRUE(driver->start());
   Frame frame;
   ASSERT_TRUE(eventually([&] { return driver->poll(frame); }));
@@ -304,7 +290,7 @@ TEST(RigelDriver, AThousandCyclesLeaveNoThreadAndNoDescriptor) {
     return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
   };
   const auto threads = entries("/proc/self/task"), descriptors = entries("/proc/self/fd");
-  RigelOptions options = quick();
+  RigelOptions options = quick_rigel();
   options.width = options.height = 384;  // the cheapest picture
   for (int i = 0; i < 1000; ++i) {
     auto driver = rigel_camera([&] { return simulator.open(); }, options, clock);
@@ -357,17 +343,17 @@ TEST(RigelDriver, CamerasThatCannotBeUsedSayWhy) {
     EXPECT_EQ(driver->state(), FrameSourceState::kStopped);
     return started ? Error{} : started.error();
   };
-  RigelOptions wrong_size = quick();
+  RigelOptions wrong_size = quick_rigel();
   wrong_size.width = 752;
   EXPECT_THAT(error_of(configuration(), wrong_size).message, HasSubstr("640x480, 640x240, 384x384"));
   auto isochronous = configuration();
   isochronous[isochronous.size() - 4] = std::byte{1};
-  EXPECT_EQ(error_of(isochronous, quick()).kind, ErrorKind::kUnavailable);
-  EXPECT_THAT(error_of(isochronous, quick()).message, HasSubstr("isochronously"));
-  EXPECT_EQ(error_of({}, quick()).kind, ErrorKind::kBadData);
+  EXPECT_EQ(error_of(isochronous, quick_rigel()).kind, ErrorKind::kUnavailable);
+  EXPECT_THAT(error_of(isochronous, quick_rigel()).message, HasSubstr("isochronously"));
+  EXPECT_EQ(error_of({}, quick_rigel()).kind, ErrorKind::kBadData);
   auto longer = configuration();
   longer[2] = std::byte{0xff};
-  EXPECT_EQ(error_of(longer, quick()).kind, ErrorKind::kBadData);
+  EXPECT_EQ(error_of(longer, quick_rigel()).kind, ErrorKind::kBadData);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace dubsar {
 namespace {
 
 using RigelOverLibusb = OverLibusb;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const DeviceInfo* find(const std::vector<DeviceInfo>& devices, std::uint16_t product) {
   const auto found = std::find_if(devices.begin(), devices.end(), [&](const DeviceInfo& d) {

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <string>
 
+#include "core/base/system/second.h"
 #include "devices/transport/record_transport.h"
 #include "devices/transport/replay_transport.h"
 #include "devices/transport/sim_transport.h"
@@ -19,7 +20,6 @@
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
 namespace fs = std::filesystem;
 
 class RecordingOnDisk : public testing::Test {
@@ -62,7 +62,7 @@ TEST_F(RecordingOnDisk, WhatIsOlderThanHalfASecondIsOnTheDiskAlsoWhenNothingMore
   device.send(from_hex("0102"));
   std::array<std::byte, 8> buffer;
   ASSERT_EQ(transport->read(buffer, milliseconds(0)), std::size_t{2});
-  clock.advance(kSecond / 2);
+  clock.advance(kSecondNs / 2);
   ASSERT_EQ(transport->read(buffer, milliseconds(0)), std::size_t{0});
   const auto so_far = read_recording(partial());
   ASSERT_TRUE(so_far) << so_far.error().message;
@@ -79,7 +79,7 @@ TEST_F(RecordingOnDisk, AKilledProgramLosesAtMostTheLastHalfSecondAndNeverTheOld
     const auto writer = RecordingWriter::create(path(), "spacemouse", "", clock).value();
     for (int i = 0; i < 200; ++i) {
       writer->add(WireEventKind::kRead, from_hex("01020304"));
-      clock.advance(kSecond / 10);
+      clock.advance(kSecondNs / 10);
     }
     (void)!::write(ready[1], "x", 1);
     for (;;) ::pause();
@@ -93,7 +93,7 @@ TEST_F(RecordingOnDisk, AKilledProgramLosesAtMostTheLastHalfSecondAndNeverTheOld
   EXPECT_EQ(old_text(), "the old one");
   const auto left = read_recording(partial());
   ASSERT_TRUE(left) << left.error().message;
-  EXPECT_GE(left->events.back().time, 19 * kSecond + 9 * kSecond / 10 - kSecond / 2);
+  EXPECT_GE(left->events.back().time, 19 * kSecondNs + 9 * kSecondNs / 10 - kSecondNs / 2);
 }
 
 TEST_F(RecordingOnDisk, AFullDiskIsAnErrorAndLeavesTheOldOne) {
@@ -128,25 +128,25 @@ TEST_F(RecordingOnDisk, LinksStayLinksAndFoldersAreRefused) {
 }
 
 TEST(Replay, ATimeStampFarInTheFutureIsNotWaitedFor) {
-  const TimestampNs far = TimestampNs{200} * 86'400 * kSecond;
+  const TimestampNs far = TimestampNs{200} * 86'400 * kSecondNs;
   Recording recording{"spacemouse", "", {}, false};
-  recording.events = {{kSecond, WireEventKind::kRead, {}, from_hex("01")},
+  recording.events = {{kSecondNs, WireEventKind::kRead, {}, from_hex("01")},
                       {far, WireEventKind::kRead, {}, from_hex("02")},
-                      {far + kSecond, WireEventKind::kRead, {}, from_hex("03")}};
+                      {far + kSecondNs, WireEventKind::kRead, {}, from_hex("03")}};
   for (const double factor : {1.0, 4.0}) {
     ManualClock clock;
     ReplaySession session(recording, clock, factor);
     const auto transport = session.open().value();
     std::array<std::byte, 8> buffer;
     std::vector<double> came_s;
-    for (int i = 0; i < 2000 && came_s.size() < 3; ++i, clock.advance(kSecond / 100))
+    for (int i = 0; i < 2000 && came_s.size() < 3; ++i, clock.advance(kSecondNs / 100))
       if (const auto length = transport->read(buffer, milliseconds(0)); length && *length > 0)
         came_s.push_back(1e-9 * static_cast<double>(clock.now()));
     ASSERT_EQ(came_s.size(), 3U);
     EXPECT_NEAR(came_s[0], 1.0 / factor, 0.02);
     EXPECT_NEAR(came_s[1] - came_s[0], 5.0 / factor, 0.02);
     EXPECT_NEAR(came_s[2] - came_s[1], 1.0 / factor, 0.02);
-    EXPECT_EQ(session.recorded_clock().now() / kSecond, (far + kSecond) / kSecond);
+    EXPECT_EQ(session.recorded_clock().now() / kSecondNs, (far + kSecondNs) / kSecondNs);
   }
   EXPECT_EQ(parse_recording("dubsar-recording 1\ndriver spacemouse\n9000000000000000000 r 01\n").error().kind,
             ErrorKind::kBadData);

@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "core/base/files/atomic_file.h"
+#include "core/base/system/second.h"
 #include "devices/transport/hotplug_watch.h"
 #include "devices/transport/reconnector.h"
 #include "devices/transport/record_transport.h"
@@ -24,7 +25,6 @@ namespace dubsar {
 namespace {
 
 constexpr milliseconds kNoWait{0};
-constexpr TimestampNs kSecond = 1'000'000'000;
 
 std::string read_hex(Transport& transport, milliseconds timeout = kNoWait) {
   std::array<std::byte, 64> buffer;
@@ -237,14 +237,14 @@ TEST(Reconnector, PausesGrowFromHalfASecondToTen) {
     attempts.push_back(now);
     return fail(ErrorKind::kUnavailable, "not there");
   });
-  for (; now <= 46 * kSecond; now += kSecond / 10) EXPECT_EQ(reconnector.transport(now), nullptr);
+  for (; now <= 46 * kSecondNs; now += kSecondNs / 10) EXPECT_EQ(reconnector.transport(now), nullptr);
   const std::vector<double> expected{0, 0.5, 1.5, 3.5, 7.5, 15.5, 25.5, 35.5, 45.5};
   ASSERT_EQ(attempts.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i)
     EXPECT_NEAR(static_cast<double>(attempts[i]) * 1e-9, expected[i], 1e-9);
   EXPECT_EQ(reconnector.reason(), "not there");
   reconnector.wake();
-  now = 46 * kSecond + 1;
+  now = 46 * kSecondNs + 1;
   reconnector.transport(now);
   EXPECT_EQ(attempts.back(), now);
 }
@@ -284,7 +284,7 @@ class UdpSender {
 };
 
 TEST(Udp, HearsOnlyTheFirstSenderUntilItFallsSilent) {
-  ManualClock clock(kSecond);
+  ManualClock clock(kSecondNs);
   UdpOptions options;
   options.port = 0;
   options.accept = [](std::span<const std::byte> d) { return d.size() == 2; };
@@ -304,7 +304,7 @@ TEST(Udp, HearsOnlyTheFirstSenderUntilItFallsSilent) {
 }
 
 TEST(Udp, DropsWhatComesFasterThanTheRate) {
-  ManualClock clock(kSecond);
+  ManualClock clock(kSecondNs);
   UdpOptions options;
   options.port = 0;
   auto udp = open_udp(options, clock).value();

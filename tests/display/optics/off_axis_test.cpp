@@ -10,6 +10,8 @@
 #include <glm/vec4.hpp>
 #include <numbers>
 
+#include "tests/display/ndc.h"
+
 namespace dubsar {
 namespace {
 
@@ -21,11 +23,6 @@ constexpr Screen kScreen{.width_mm = 400,
                          .window_y = 0,
                          .window_w = 2000,
                          .window_h = 1000};
-
-glm::dvec3 ndc(const View& view, const glm::dvec3& world) {
-  const glm::dvec4 p = view.clip_from_world() * glm::dvec4(world, 1);
-  return glm::dvec3(p) / p.w;
-}
 
 TEST(OffAxis, PointsOnThePanelAreSeenAtTheSamePlaceByEveryEye) {
   const WindowRect window = kScreen.window_rect();

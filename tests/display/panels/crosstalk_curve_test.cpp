@@ -7,14 +7,14 @@
 namespace dubsar {
 namespace {
 
-PanelProfile laptop() { return built_in_panels().find("spatiallabs-15.6").value(); }
+PanelProfile laptop_profile() { return built_in_panels().find("spatiallabs-15.6").value(); }
 
 TEST(CrosstalkCurve, OfTheLaptopPanelStaysWithinItsBounds) {
   CrosstalkQuestion question;
   question.head_mm_s = {0, 100, 200, 400};
   question.latency_ms = {20, 40, 75};
   question.places_mm = {{120, 60, 500}};
-  const auto curve = crosstalk_curve(laptop(), question);
+  const auto curve = crosstalk_curve(laptop_profile(), question);
   ASSERT_TRUE(curve) << curve.error().message;
   EXPECT_LE(curve->nominal, 0.04);
   EXPECT_LE(curve->worst_sideways, 0.05);

@@ -8,15 +8,13 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "tests/display/ndc.h"
+
 namespace dubsar {
 namespace {
 
 constexpr Box kTablet{{-20, -15, -5}, {20, 15, 5}};  // thin in z: right, up, front = x, y, z
 
-glm::dvec3 ndc(const View& view, const glm::dvec3& world) {
-  const glm::dvec4 p = view.clip_from_world() * glm::dvec4(world, 1);
-  return glm::dvec3(p) / p.w;
-}
 ViewDirection direction(std::string_view text) { return parse_view_direction(text).value(); }
 
 TEST(Camera, FrontShowsTheBroadFaceWithZUpWherePossible) {

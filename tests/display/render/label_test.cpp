@@ -20,7 +20,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kSide = 200;  // pixels; one mm each
+constexpr int kLabelSide = 200;  // pixels; one mm each
 
 class Labels : public ::testing::Test {
  protected:
@@ -40,7 +40,7 @@ class Labels : public ::testing::Test {
     View view;
     view.clip_from_view = glm::ortho(-100.0, 100.0, -100.0, 100.0, -100.0, 100.0);
     const SceneView scene{items, Light(), {}, Background{{0, 0, 0}, false}};
-    auto array = ViewArray::create(kSide, kSide, 3).value();
+    auto array = ViewArray::create(kLabelSide, kLabelSide, 3).value();
     const std::array<View, 2> eyes{view, view};
     const std::array<int, 2> where{2, 0};
     EXPECT_TRUE(renderer_.render_layers(scene, eyes, where, array));
@@ -56,7 +56,7 @@ class Labels : public ::testing::Test {
     return out;
   }
   struct Extent {
-    int left = kSide, right = -1, top = kSide, bottom = -1, count = 0;
+    int left = kLabelSide, right = -1, top = kLabelSide, bottom = -1, count = 0;
   };
   /// Of pixels that `wanted` says yes to.
   template <class Wanted>
@@ -112,7 +112,7 @@ TEST_F(Labels, AreSharpAtEverySizeAndHaveABorder) {
     // Across the stem: nothing, border, white, border, nothing, each step within a pixel and a half.
     const int y = (seen.top + seen.bottom) / 2;
     int between = 0, whites = 0, blues = 0;
-    for (int x = 0; x < kSide; ++x) {
+    for (int x = 0; x < kLabelSide; ++x) {
       const std::uint8_t* const p = image.at(x, y);
       whites += p[0] > 230;
       blues += p[2] > 230 && p[0] < 25;
@@ -180,8 +180,8 @@ TEST_F(Labels, AreReadAsAWholeOrNotAtAll) {
     const std::array<DrawItem, 2> items{plate, label_};
     const Image image = picture(items);
     int brightest = 0;
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) brightest = std::max<int>(brightest, image.at(x, y)[0]);
+    for (int y = 0; y < kLabelSide; ++y)
+      for (int x = 0; x < kLabelSide; ++x) brightest = std::max<int>(brightest, image.at(x, y)[0]);
     light.push_back(brightest);
   }
   EXPECT_GT(light.front(), 240);
@@ -207,7 +207,7 @@ TEST_F(Labels, EachViewDecidesForItself) {
     eyes[eye].clip_from_view = glm::ortho(-100.0, 100.0, -100.0, 100.0, -100.0, 100.0) * shear;
   }
   const SceneView scene{items, Light(), {}, Background{{0, 0, 0}, false}};
-  auto array = ViewArray::create(kSide, kSide, 2).value();
+  auto array = ViewArray::create(kLabelSide, kLabelSide, 2).value();
   const std::array<int, 2> where{0, 1};
   ASSERT_TRUE(renderer_.render_layers(scene, eyes, where, array));
   EXPECT_EQ(extent(array.read_layer(0).value(), white).count, 0) << "seen 20 mm farther left: behind the wall";
@@ -229,7 +229,7 @@ TEST_F(Labels, OneViewDecidesForAllWhereThereIsAJudge) {
     eyes[eye].clip_from_view = glm::ortho(-100.0, 100.0, -100.0, 100.0, -100.0, 100.0) * shear;
   }
   const std::span<const View> both(eyes.data(), 2);
-  auto array = ViewArray::create(kSide, kSide, 2).value();
+  auto array = ViewArray::create(kLabelSide, kLabelSide, 2).value();
   const std::array<int, 2> where{0, 1};
   const auto counts = [&](double x, bool layered) {
     label_.at_mm = {x, 0, -40};
@@ -299,7 +299,7 @@ TEST_F(Labels, OnTheirGroundAreReadWhateverLiesBehind) {
       view.clip_from_view = glm::ortho(-100.0, 100.0, -100.0, 100.0, -100.0, 100.0);
       const std::array<DrawItem, 1> items{label_};
       const SceneView scene{items, Light(), {}, Background{{ground[0], ground[1], ground[2]}, false}};
-      auto array = ViewArray::create(kSide, kSide, 1).value();
+      auto array = ViewArray::create(kLabelSide, kLabelSide, 1).value();
       ASSERT_TRUE(renderer_.render(scene, std::span(&view, 1), 1, array));
       const Image image = array.read_layer(0).value();
       // Of the plate: columns beside the first letter's stem, half an em above the base line.

@@ -19,13 +19,13 @@
 namespace dubsar {
 namespace {
 
-constexpr int kSide = 240, kMiddle = kSide / 2, kThird = kSide / 3;
+constexpr int kLookSide = 240, kMiddle = kLookSide / 2, kThird = kLookSide / 3;
 constexpr double kRadius = 2.0;
 
 RenderOptions front(const Shading& shading) {
   RenderOptions options;
   options.shading = shading;
-  options.camera.width = options.camera.height = kSide;
+  options.camera.width = options.camera.height = kLookSide;
   options.camera.margin = 0.0;
   options.samples = 1;
   return options;
@@ -59,8 +59,8 @@ TEST(Blend, IsTheMeanOfBothInLinearLight) {
   both.other = {preset("raking").style, preset("raking").light, 0.3};
   const Image mixed = picture(mesh, both);
   int differing = 0;
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x)
+  for (int y = 0; y < kLookSide; ++y)
+    for (int x = 0; x < kLookSide; ++x)
       for (int c = 0; c < 3; ++c) {
         const double a = linear_from_srgb(first.at(x, y)[c]), b = linear_from_srgb(second.at(x, y)[c]);
         ASSERT_NEAR(mixed.at(x, y)[c], srgb_from_linear(0.7 * a + 0.3 * b), 1.5) << x << " " << y;
@@ -87,8 +87,8 @@ TEST(Blend, OfLooksWithAndWithoutLightShadowsAndHighlightsIsTheirMean) {
     both.other.share = 0.0;
     const Image first = picture(mesh, both);
     int off = 0;
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x)
+    for (int y = 0; y < kLookSide; ++y)
+      for (int x = 0; x < kLookSide; ++x)
         for (int c = 0; c < 3; ++c) {
           const double a = linear_from_srgb(first.at(x, y)[c]), b = linear_from_srgb(second.at(x, y)[c]);
           off += std::abs(mixed.at(x, y)[c] - srgb_from_linear(0.5 * a + 0.5 * b)) > 1.5;
@@ -121,7 +121,7 @@ TEST(RadianceScaling, OnABallIsTheFormulaOfThePaper) {
     const Image image = picture(ball(), shading);
     // Mean curvature 1 / R; the bend is 2.5 tanh of half of it.
     const double bend = strength * 2.5 * std::tanh(0.5 / kRadius);
-    for (int x = kSide / 2; x < kSide * 0.97; x += 5) {
+    for (int x = kLookSide / 2; x < kLookSide * 0.97; x += 5) {
       const double at = (x + 0.5 - kMiddle) / (kMiddle), facing = std::sqrt(1 - at * at);
       EXPECT_NEAR(image.at(x, kMiddle)[0], srgb_from_linear(scaled(bend, facing)), 2.5) << strength << " " << facing;
     }
@@ -156,7 +156,7 @@ TEST(FigureColours, OnABallAreThoseOfItsCurvatures) {
       shading.style.contrast = 1.5;
       const Image image = picture(ball(), shading);
       const Rgb8 expected = field_color(shading.style, c.figure);
-      for (const int x : {kSide / 2, kSide * 2 / 3, kSide / 5})
+      for (const int x : {kLookSide / 2, kLookSide * 2 / 3, kLookSide / 5})
         for (int channel = 0; channel < 3; ++channel)
           EXPECT_NEAR(image.at(x, kMiddle)[channel], expected[channel], 3) << c.style << " " << x;
     }
@@ -221,10 +221,10 @@ TEST(FigureColours, EveryLevelOfDetailCarriesThem) {
   ASSERT_TRUE(carry_fields(levels, mesh, fields_needed(shading.style), progress));
   ASSERT_GT(levels.levels(), 2);
   auto renderer = Renderer::create().value();
-  const Camera camera = fit_camera(levels.box_mm(), {.width = kSide, .height = kSide}).value();
+  const Camera camera = fit_camera(levels.box_mm(), {.width = kLookSide, .height = kLookSide}).value();
   const Rgb8 expected = field_color(shading.style, 1.0 / kRadius);
   for (const double coarse : {0.0, 2.0, 4.0}) {
-    auto array = ViewArray::create(kSide, kSide, 1).value();
+    auto array = ViewArray::create(kLookSide, kLookSide, 1).value();
     const int layer = 0;
     ASSERT_TRUE(renderer.render_layers(MeshScene(levels, shading), std::span(&camera.view, 1), std::span(&layer, 1),
                                        array, coarse));

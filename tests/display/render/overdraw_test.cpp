@@ -16,8 +16,8 @@
 namespace dubsar {
 namespace {
 
-constexpr int kSide = 240;        // pixels; 4 a mm
-constexpr double kFinest = 1e-3;  // pixels that may be merged: quick, but with all triangles
+constexpr int kOverdrawSide = 240;  // pixels; 4 a mm
+constexpr double kFinest = 1e-3;    // pixels that may be merged: quick, but with all triangles
 
 class Overdraw : public ::testing::Test {
  protected:
@@ -35,7 +35,7 @@ class Overdraw : public ::testing::Test {
   /// Fragments that were nearest so far, for a pixel that is not background.
   double fragments_a_pixel(const LodMesh& mesh, const glm::dmat4& world) {
     auto renderer = Renderer::create().value();
-    auto array = ViewArray::create(kSide, kSide, 1).value();
+    auto array = ViewArray::create(kOverdrawSide, kOverdrawSide, 1).value();
     Shading shading = shading_preset("phong").value();
     shading.background = {{0, 0, 255}, false};
     const MeshScene scene(mesh, shading, world);
@@ -50,9 +50,9 @@ class Overdraw : public ::testing::Test {
     glDeleteQueries(1, &query);
     const Image image = array.read_layer(0).value();
     int covered = 0;
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) covered += image.at(x, y)[2] < 255;
-    EXPECT_GT(covered, kSide * kSide / 4);
+    for (int y = 0; y < kOverdrawSide; ++y)
+      for (int x = 0; x < kOverdrawSide; ++x) covered += image.at(x, y)[2] < 255;
+    EXPECT_GT(covered, kOverdrawSide * kOverdrawSide / 4);
     return static_cast<double>(fragments) / covered;
   }
 
@@ -103,7 +103,7 @@ TEST_F(Overdraw, FacesThatTurnAwayFromTheLightCastNothingOnlyWhileThingsMoveAndN
     if (cut) shading.clips = {{{0, 0, -15}, {0, 0, 1}}};
     const MeshScene scene(mesh, shading, world);
     shading.clips.clear();
-    EXPECT_TRUE(map.draw(scene, std::span(&view_, 1), 64, coarse_px, kSide));
+    EXPECT_TRUE(map.draw(scene, std::span(&view_, 1), 64, coarse_px, kOverdrawSide));
     std::vector<float> depths(64 * 64);
     glGetTextureImage(map.texture(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
                       static_cast<GLsizei>(depths.size() * sizeof(float)), depths.data());

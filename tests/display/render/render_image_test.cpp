@@ -13,7 +13,7 @@
 namespace dubsar {
 namespace {
 
-constexpr Rgb8 kBlack{0, 0, 0};
+constexpr Rgb8 kNoLight{0, 0, 0};
 constexpr std::array<Rgb8, 8> kFaceColors{Rgb8{255, 0, 0}, {0, 255, 0},   {0, 0, 255},     {255, 255, 0},
                                           {255, 0, 255},   {0, 255, 255}, {255, 255, 255}, {128, 128, 128}};
 
@@ -24,7 +24,7 @@ RenderOptions flat_options(int width, int height) {
   options.camera.height = height;
   options.shading = shading_preset("ao").value();
   options.shading.style.base_color = {255, 255, 255};
-  options.shading.background.color = kBlack;
+  options.shading.background.color = kNoLight;
   options.samples = 1;
   return options;
 }
@@ -141,7 +141,7 @@ TEST(RenderImage, AnisotropicVoxelsKeepTheirMillimetres) {
   RenderOptions options = flat_options(200, 300);
   options.camera.mm_per_pixel = 0.1;
   const Image image = render(mesh, options).image;
-  for (const auto& [x, y] : {std::pair{0, 0}, {199, 0}, {0, 299}, {199, 299}}) EXPECT_NE(pixel(image, x, y), kBlack);
+  for (const auto& [x, y] : {std::pair{0, 0}, {199, 0}, {0, 299}, {199, 299}}) EXPECT_NE(pixel(image, x, y), kNoLight);
 }
 
 TEST(RenderImage, TilesFitTogether) {
@@ -173,7 +173,7 @@ TEST(RenderImage, HiddenPartitionsAreNotDrawnAndDoNotFrameThePicture) {
   const Picture tablet = render(mesh, options);
   EXPECT_EQ(pixel(tablet.image, 50, 50), kFaceColors[0]);
   EXPECT_EQ(pixel(tablet.image, 10, 10), kFaceColors[0]);
-  EXPECT_EQ(pixel(tablet.image, 9, 9), kBlack);
+  EXPECT_EQ(pixel(tablet.image, 9, 9), kNoLight);
   EXPECT_NEAR(tablet.mm_per_pixel, 10 / 80.0, 1e-9);
 
   SilentProgress progress;

@@ -16,7 +16,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kSide = 100;  // pixels; one mm each
+constexpr int kSceneSide = 100;  // pixels; one mm each
 constexpr Rgb8 kBlack{0, 0, 0}, kRed{255, 0, 0}, kGreen{0, 255, 0}, kWhite{255, 255, 255};
 
 class Scene : public ::testing::Test {
@@ -49,12 +49,12 @@ class Scene : public ::testing::Test {
   Image picture(std::span<const DrawItem> items, std::span<const ClipPlane> clips = {}, int factor = 1) {
     const SceneView scene{items, Light(), clips, Background{kBlack, false}};
     const View eye = view();
-    auto array = ViewArray::create(kSide, kSide, 1).value();
+    auto array = ViewArray::create(kSceneSide, kSceneSide, 1).value();
     const auto drawn = renderer_.render(scene, std::span(&eye, 1), factor, array);
     EXPECT_TRUE(drawn) << drawn.error().message;
     const Image one = array.read_layer(0).value();
     if (factor == 1) {  // in layers, too
-      auto layers = ViewArray::create(kSide, kSide, 3).value();
+      auto layers = ViewArray::create(kSceneSide, kSceneSide, 3).value();
       const std::array<View, 2> eyes{eye, eye};
       const std::array<int, 2> where{2, 0};
       EXPECT_TRUE(renderer_.render_layers(scene, eyes, where, layers));
@@ -131,7 +131,7 @@ TEST_F(Scene, LinesHaveTheirWidthAndHideBehindSurfaces) {
   std::array<DrawItem, 2> items{line, plate(mesh)};
   const auto width_at = [](const Image& image, int column) {
     int out = 0;
-    for (int y = 0; y < kSide; ++y) out += image.at(column, y)[2] > 128;
+    for (int y = 0; y < kSceneSide; ++y) out += image.at(column, y)[2] > 128;
     return out;
   };
   const Image one = picture(items), finer = picture(items, {}, 3);
@@ -157,7 +157,7 @@ TEST_F(Scene, ALineThatBeginsBehindTheEyeIsCutAtTheNearPlane) {
   line.points_mm = {{0, -5, 30}, {0, -5, -100}};  // from behind the eye to 100 mm before it
   const DrawItem item = line;
   const SceneView scene{std::span(&item, 1), {}, {}, Background{kBlack, false}};
-  auto array = ViewArray::create(kSide, kSide, 1).value();
+  auto array = ViewArray::create(kSceneSide, kSceneSide, 1).value();
   ASSERT_TRUE(renderer_.render(scene, std::span(&eye, 1), 1, array));
   const Image image = array.read_layer(0).value();
   EXPECT_EQ(at(image, 0.5, -25.5), kWhite) << "y = -5 at 20 mm is half of the lower half";

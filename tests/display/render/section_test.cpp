@@ -15,7 +15,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kSide = 400;
+constexpr int kSectionSide = 400;
 constexpr double kHalf = 12.0;  // mm of the world across the picture, from its middle
 
 class Section : public ::testing::Test {
@@ -29,7 +29,7 @@ class Section : public ::testing::Test {
     view_.clip_from_view = glm::ortho(-kHalf, kHalf, -kHalf, kHalf, -100.0, 100.0);
   }
   Image picture(const SceneView& scene) {
-    auto array = ViewArray::create(kSide, kSide, 1).value();
+    auto array = ViewArray::create(kSectionSide, kSectionSide, 1).value();
     const auto drawn = renderer_->render(scene, std::span(&view_, 1), 1, array);
     EXPECT_TRUE(drawn) << drawn.error().message;
     return array.read_layer(0).value();
@@ -38,9 +38,9 @@ class Section : public ::testing::Test {
   static bool filled(const std::uint8_t* p) { return p[0] > 60 && p[0] < 165 && 10 * p[2] < 8 * p[0]; }
   static double filled_mm2(const Image& image) {
     int count = 0;
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) count += filled(image.at(x, y)) ? 1 : 0;
-    return count * std::pow(2 * kHalf / kSide, 2);
+    for (int y = 0; y < kSectionSide; ++y)
+      for (int x = 0; x < kSectionSide; ++x) count += filled(image.at(x, y)) ? 1 : 0;
+    return count * std::pow(2 * kHalf / kSectionSide, 2);
   }
   std::unique_ptr<EglContext> context_;
   std::optional<Renderer> renderer_;
@@ -81,7 +81,7 @@ TEST_F(Section, OfAShellIsARing) {
   const double ring = std::numbers::pi * (100 - 36);
   const Image image = picture(MeshScene(mesh, shading_));
   EXPECT_NEAR(filled_mm2(image), ring, 0.03 * ring);
-  EXPECT_FALSE(filled(image.at(kSide / 2, kSide / 2))) << "into the hollow one looks";
+  EXPECT_FALSE(filled(image.at(kSectionSide / 2, kSectionSide / 2))) << "into the hollow one looks";
 }
 
 TEST_F(Section, BetweenTwoPlanesIsSeenWhereTheEyeComesIn) {
@@ -91,7 +91,7 @@ TEST_F(Section, BetweenTwoPlanesIsSeenWhereTheEyeComesIn) {
   // The disk of the front plane, as far as x = 1: a circular segment of radius sqrt(91).
   const double r = std::sqrt(91.0), area = std::numbers::pi * r * r - (r * r * std::acos(1 / r) - std::sqrt(r * r - 1));
   EXPECT_NEAR(filled_mm2(image), area, 0.03 * area);
-  EXPECT_EQ(image.at(kSide / 2 + 40, kSide / 2)[0], 0) << "beyond the second plane there is nothing";
+  EXPECT_EQ(image.at(kSectionSide / 2 + 40, kSectionSide / 2)[0], 0) << "beyond the second plane there is nothing";
 }
 
 /// Two bodies that touch in the plane z = 0: a ball of 8 mm cut in half, the front one partition 0, the back one 1. The
@@ -149,8 +149,8 @@ TEST_F(Section, WhereTwoBodiesTouchIsFilledAndNotTheirBorder) {
       const Image image = picture(MeshScene(mesh, shading_));
       EXPECT_NEAR(filled_mm2(image), disk * std::cos(tilt), 0.02 * disk) << back_first << " " << tilt;
       int blue = 0;
-      for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x) blue += image.at(x, y)[2] > image.at(x, y)[0] + 20 ? 1 : 0;
+      for (int y = 0; y < kSectionSide; ++y)
+        for (int x = 0; x < kSectionSide; ++x) blue += image.at(x, y)[2] > image.at(x, y)[0] + 20 ? 1 : 0;
       EXPECT_EQ(blue, 0) << "no patch is seen, " << back_first << " " << tilt;
     }
 }
@@ -162,7 +162,7 @@ TEST_F(Section, WhereTwoBodiesTouchIsFilledInCoarseLevelsToo) {
   while (!mesh.complete()) ASSERT_TRUE(mesh.update());
   ASSERT_GT(mesh.levels(), 1);
   shading_.clips = {{{0, 0, 3}, {0, 0, -1}}};
-  auto array = ViewArray::create(kSide, kSide, 1).value();
+  auto array = ViewArray::create(kSectionSide, kSectionSide, 1).value();
   const int layer = 0;
   ASSERT_TRUE(
       renderer_->render_layers(MeshScene(mesh, shading_), std::span(&view_, 1), std::span(&layer, 1), array, 12));

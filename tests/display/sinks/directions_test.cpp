@@ -34,8 +34,9 @@ namespace dubsar {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr int kWidth = 96, kHeight = 54;
-constexpr Screen kScreen{.width_px = kWidth, .height_px = kHeight, .window_w = kWidth, .window_h = kHeight};
+constexpr int kPanelWidth = 96, kPanelHeight = 54;
+constexpr Screen kPanelScreen{
+    .width_px = kPanelWidth, .height_px = kPanelHeight, .window_w = kPanelWidth, .window_h = kPanelHeight};
 
 /// Two small panels with the lenses of real ones, so that whole pictures can be looked at.
 constexpr const char* kSmallPanels = R"([
@@ -50,14 +51,14 @@ constexpr const char* kSmallPanels = R"([
    "lens": {"pitch": 44.72, "slope": -7.45, "center": 0.1, "cell_pattern": 4,
             "cells": [{"R": [-0.25, -0.31], "G": [-0.25, 0.28], "B": [0.25, 0]}, {"R": [0.25, -0.31], "G": [0.25, 0.28], "B": [-0.25, 0]}]}}])";
 
-using Light = glm::dvec3;  ///< linear
+using LinearLight = glm::dvec3;  ///< linear
 
-Light light_of(const Rgb8& c) { return {linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2])}; }
+LinearLight light_of(const Rgb8& c) { return {linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2])}; }
 
 /// Mean light of the pixels that `chosen` names, top row first, without a border.
-Light mean_light(
+LinearLight mean_light(
     const Image& image, int border, const std::function<bool(int, int)>& chosen = [](int, int) { return true; }) {
-  Light sum(0.0);
+  LinearLight sum(0.0);
   int count = 0;
   for (int y = border; y < image.height - border; ++y)
     for (int x = border; x < image.width - border; ++x)
@@ -100,7 +101,7 @@ class Directions : public ::testing::Test {
     auto made = SinkCatalog(load_panels(folder_), plugins_).make(spec);
     ASSERT_TRUE(made) << made.error().message;
     sink_ = std::move(*made);
-    ASSERT_TRUE(sink_->configure(kScreen));
+    ASSERT_TRUE(sink_->configure(kPanelScreen));
     sink_->views(viewer);
   }
   /// A display of a shared library, or one of ours.
@@ -139,13 +140,13 @@ class Directions : public ::testing::Test {
     return surface.read().value();
   }
   /// The view whose colour comes nearest to what was seen.
-  int nearest_view_to(const Light& seen) const {
+  int nearest_view_to(const LinearLight& seen) const {
     int best = 0;
     for (int k = 1; k < sink_->traits().views; ++k)
       if (glm::length(light_of(color(k)) - seen) < glm::length(light_of(color(best)) - seen)) best = k;
     return best;
   }
-  void expect_view(int view, const Light& seen, double most_off, const std::string& what) const {
+  void expect_view(int view, const LinearLight& seen, double most_off, const std::string& what) const {
     EXPECT_EQ(nearest_view_to(seen), view) << what;
     EXPECT_LT(glm::length(light_of(color(view)) - seen), most_off) << what;
   }
@@ -171,7 +172,7 @@ class Directions : public ::testing::Test {
     open(spec);
     const Image picture = composed();
     for (int eye = 0; eye < 2; ++eye) {
-      Light sum(0.0);
+      LinearLight sum(0.0);
       for (int c = 0; c < 3; ++c)  // a polariser passes subpixel by subpixel
         sum[c] =
             mean_light(picture, 0, [&](int x, int y) { return testing::interlace_parity(pattern, x, y, c) == eye; })[c];
@@ -183,15 +184,15 @@ class Directions : public ::testing::Test {
   void glasses(const std::string& spec, const glm::dvec3& left_filter) {
     open(spec);
     for (int lit = 0; lit < 2; ++lit) {
-      auto array = ViewArray::create(kWidth, kHeight, 2).value();
+      auto array = ViewArray::create(kPanelWidth, kPanelHeight, 2).value();
       for (int k = 0; k < 2; ++k) {
-        Image image(kWidth, kHeight, 4);
+        Image image(kPanelWidth, kPanelHeight, 4);
         std::fill(image.pixels.begin(), image.pixels.end(), static_cast<std::uint8_t>(k == lit ? 255 : 0));
         ASSERT_TRUE(array.write_layer(k, image));
       }
       auto surface = OffscreenSurface::create(sink_->traits().output).value();
       ASSERT_TRUE(sink_->compose(array, surface.surface()));
-      const Light light = mean_light(surface.read().value(), 0);
+      const LinearLight light = mean_light(surface.read().value(), 0);
       const glm::dvec3 right_filter = glm::dvec3(1.0) - left_filter;
       const double by_left = glm::dot(light, left_filter) / glm::dot(left_filter, left_filter);
       const double by_right = glm::dot(light, right_filter) / glm::dot(right_filter, right_filter);
@@ -240,7 +241,7 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
        [&] {
          packed("top_bottom", true, false);
          packed("top_bottom:full,right_first", true, true);
-         packed("top_bottom:frame_packing", true, false, kHeight / 24);
+         packed("top_bottom:frame_packing", true, false, kPanelHeight / 24);
        }},
       {"interlaced",
        [&] {
@@ -278,13 +279,13 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
          const GlFramebuffer buffers = make_framebuffer();
          for (int eye = 0; eye < 2; ++eye) {
            pictures[eye] = make_texture(GL_TEXTURE_2D);
-           glTextureStorage2D(pictures[eye], 1, GL_RGBA8, kWidth, kHeight);
+           glTextureStorage2D(pictures[eye], 1, GL_RGBA8, kPanelWidth, kPanelHeight);
            glNamedFramebufferTexture(buffers, GL_COLOR_ATTACHMENT0 + eye, pictures[eye], 0);
          }
-         ASSERT_TRUE(
-             sink_->compose(painted(), {buffers, kWidth, kHeight, {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}}));
+         ASSERT_TRUE(sink_->compose(
+             painted(), {buffers, kPanelWidth, kPanelHeight, {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}}));
          for (int eye = 0; eye < 2; ++eye) {
-           Image read(kWidth, kHeight, 4);
+           Image read(kPanelWidth, kPanelHeight, 4);
            glGetTextureImage(pictures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(read.pixels.size()),
                              read.pixels.data());
            expect_view(eye, mean_light(read, 0), 1e-9, "quad_buffer");
@@ -298,7 +299,7 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
          FieldCadence cadence;
          cadence.set_refresh(120.0);
          const double beat_ns = 1e9 / 119.88;
-         std::array<Light, 2> light{Light(0.0), Light(0.0)};
+         std::array<LinearLight, 2> light{LinearLight(0.0), LinearLight(0.0)};
          std::array<int, 2> open_beats{0, 0};
          auto surface = OffscreenSurface::create(sink_->traits().output).value();
          std::int64_t beat = 0;
@@ -309,7 +310,7 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
            };
            const Field field = cadence.next(cadence.turn(time(next, -4.0)));
            ASSERT_TRUE(sink_->compose(views, surface.surface(), field));
-           const Light shown = mean_light(surface.read().value(), 0);
+           const LinearLight shown = mean_light(surface.read().value(), 0);
            beat = next;  // in between, the picture before was held
            cadence.presented(time(beat, 0.5 * (picture % 3)));
            const auto eye = static_cast<std::size_t>(beat % 2);
@@ -328,7 +329,7 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
        [&] {
          std::array<Image, 2> worn;
          sink_ = openxr_sink(std::make_unique<KeepingHeadset>(worn));
-         ASSERT_TRUE(sink_->configure(kScreen));
+         ASSERT_TRUE(sink_->configure(kPanelScreen));
          sink_->views({});  // nominal cameras, then the wearer's
          sink_->views({});
          composed();

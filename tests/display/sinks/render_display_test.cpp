@@ -17,19 +17,19 @@
 namespace dubsar {
 namespace {
 
-constexpr Screen kScreen{.width_mm = 100,
-                         .height_mm = 60,
-                         .width_px = 200,
-                         .height_px = 120,
-                         .window_x = 0,
-                         .window_y = 0,
-                         .window_w = 200,
-                         .window_h = 120};
+constexpr Screen kDrawnScreen{.width_mm = 100,
+                              .height_mm = 60,
+                              .width_px = 200,
+                              .height_px = 120,
+                              .window_x = 0,
+                              .window_y = 0,
+                              .window_w = 200,
+                              .window_h = 120};
 
 /// White on black, colours as they are.
 DisplayOptions white_options() {
   DisplayOptions options;
-  options.screen = kScreen;
+  options.screen = kDrawnScreen;
   options.shading = shading_preset("ao").value();
   options.shading.style.base_color = {255, 255, 255};
   options.shading.background.color = {0, 0, 0};

@@ -8,9 +8,6 @@
 namespace dubsar::test {
 namespace {
 
-/// As galleries have it, where nobody was told.
-GestureOptions gallery() { return gallery_mapping().value().gestures; }
-
 TEST(GestureInGalleries, AHandThatClosesAtRestTakesHoldAndOneThatClosesOnItsWayMustOpenFirst) {
   Person rests{gallery()}, walks{gallery()};
   rests.steps(60);

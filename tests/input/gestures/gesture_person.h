@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "input/gestures/gesture.h"
+#include "input/navigation/mapping.h"
+#include "tests/input/milliseconds.h"
 
 namespace dubsar::test {
 
-inline constexpr TimestampNs kMs = 1'000'000, kStep = 10 * kMs;
+inline constexpr TimestampNs kStep = 10 * kMs;
 
 /// Fists only.
 inline GestureOptions firm() {
@@ -16,6 +18,9 @@ inline GestureOptions firm() {
   options.grab.gentle = 2.0;
   return options;
 }
+
+/// As galleries have it, where nobody was told.
+inline GestureOptions gallery() { return gallery_mapping().value().gestures; }
 
 /// A hand that is moved by hand, 100 samples a second.
 struct Person {

@@ -55,7 +55,6 @@ struct Sampled {
 };
 
 GestureOptions desk() { return default_mapping().value().gestures; }
-GestureOptions gallery() { return gallery_mapping().value().gestures; }
 
 class AtEveryRate : public ::testing::TestWithParam<double> {};
 

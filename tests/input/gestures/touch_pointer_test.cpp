@@ -11,12 +11,13 @@
 #include <random>
 
 #include "input/navigation/navigation.h"
+#include "tests/input/milliseconds.h"
 
 namespace dubsar {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr TimestampNs kMs = 1'000'000;
+using test::kMs;
 
 /// A window over a touch panel, 100 reports a second; what fingers make goes to a navigator.
 struct Glass {

@@ -12,14 +12,15 @@
 #include <random>
 
 #include "input/navigation/navigation.h"
+#include "tests/input/navigation/turns.h"
 
 namespace dubsar {
 namespace {
-
-constexpr double kRad = std::numbers::pi / 180.0;
+using test::about;
+using test::kRad;
 
 /// A mouse over a window of 1000 pixels, 100 events a second.
-struct Desk {
+struct MouseDesk {
   Mapping mapping = default_mapping().value();
   Navigator navigator{mapping};
   std::vector<InputEvent> events;
@@ -55,8 +56,6 @@ struct Desk {
   const ViewState& view() const { return navigator.view(); }
 };
 
-glm::dquat about(const glm::dvec3& axis, double degrees) { return glm::angleAxis(degrees * kRad, axis); }
-
 /// Where a place of the object (from its centre) is seen, in heights of the window, by an eye before its middle.
 glm::dvec2 seen_at(const glm::dvec3& place, const ViewState& view, const glm::dvec3& eye) {
   const glm::dvec3 at = view.rotation * place + glm::dvec3(view.pan, 0.0);
@@ -73,7 +72,7 @@ TEST(HeldPlace, TheSurfaceThatIsHeldStaysUnderThePointerWhereverItIsTakenAndWher
     const double ball = std::exp(real(std::log(0.1), std::log(0.5 * eye.z)));  // zoomed out, and far in
     const glm::dvec3 place = ball * glm::normalize(glm::dvec3(real(-1, 1), real(-1, 1), real(-0.5, 1)));
     const auto at = [&](const ViewState& view) { return seen_at(place, view, eye); };
-    Desk desk;
+    MouseDesk desk;
     const glm::dvec2 from = at({});
     far_half += place.z < 0;
     rim += std::abs(place.z) < 0.1 * ball;
@@ -96,7 +95,7 @@ TEST(HeldPlace, TheSurfaceThatIsHeldStaysUnderThePointerWhereverItIsTakenAndWher
 }
 
 TEST(HeldPlace, AHeldTurnDoesNotRollAndGoesOnWhereThePointerLeavesTheBall) {
-  Desk desk;
+  MouseDesk desk;
   desk.press({0, 0}, 0.1);
   desk.move_to({0, 0}, {0.06, 0}, 20);
   EXPECT_NEAR(turn_between_deg(desk.view().rotation, about({0, 1, 0}, std::asin(0.6) / kRad)), 0, 1e-6);
@@ -104,7 +103,7 @@ TEST(HeldPlace, AHeldTurnDoesNotRollAndGoesOnWhereThePointerLeavesTheBall) {
   const glm::dquat beyond = desk.view().rotation;
   desk.move_to({0.2, 0}, {0.3, 0}, 20);
   EXPECT_NEAR(turn_between_deg(desk.view().rotation, about({0, 1, 0}, 40) * beyond), 0, 1e-6);
-  Desk fine;  // the surface goes a quarter of the pointer's way
+  MouseDesk fine;  // the surface goes a quarter of the pointer's way
   fine.press({0, 0}, 0.1, kAlt);
   fine.move_to({0, 0}, {0.2, 0.04}, 20);
   const glm::dvec3 held = fine.view().rotation * glm::dvec3(0, 0, 0.1);
@@ -114,14 +113,14 @@ TEST(HeldPlace, AHeldTurnDoesNotRollAndGoesOnWhereThePointerLeavesTheBall) {
 TEST(HeldPlace, WheelAndDoubleClickGoByTheSurfaceThatIsSeenAndNotByThePanel) {
   const glm::dvec3 eye(0, 0, 3), place(0.2, -0.1, 0.5);
   const glm::dvec2 at = seen_at(place, {}, eye);
-  Desk desk;
+  MouseDesk desk;
   desk.events.push_back({0, EventKind::kWheel, {0, 3}, {}, false, 0, {}, false, at, place.z, eye});
   desk.step();
   // The camera stands as many times farther away (as of pictures of one view).
   const double zoom = desk.view().zoom;
   EXPECT_GT(zoom, 1.3);
   EXPECT_NEAR(glm::distance(seen_at(zoom * place, desk.view(), zoom * eye), at), 0, 1e-9);
-  Desk twice;
+  MouseDesk twice;
   for (int i = 0; i < 2; ++i) {
     twice.press(at, place.z, 0, eye);
     twice.release();

@@ -6,12 +6,16 @@
 #include <numbers>
 
 #include "input/people/person_keeper.h"
+#include "tests/input/milliseconds.h"
+#include "tests/input/navigation/turns.h"
 
 namespace dubsar {
 namespace {
+using test::about;
+using test::kRad;
 
-constexpr TimestampNs kMs = 1'000'000, kFrame = 10 * kMs;
-constexpr double kRad = std::numbers::pi / 180.0;
+using test::kMs;
+constexpr TimestampNs kFrame = 10 * kMs;
 
 /// A desk with everything on it, 100 frames a second.
 struct Desk {
@@ -71,8 +75,6 @@ struct Desk {
   }
   const ViewState& view() const { return navigator.view(); }
 };
-
-glm::dquat about(const glm::dvec3& axis, double degrees) { return glm::angleAxis(degrees * kRad, axis); }
 
 TEST(Navigation, MouseTurnsMovesAndZoomsAsInThePaper) {
   Desk desk;

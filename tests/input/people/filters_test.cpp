@@ -7,10 +7,11 @@
 #include "input/people/one_euro.h"
 #include "input/people/pose_history.h"
 #include "input/people/presence.h"
+#include "tests/input/milliseconds.h"
 
 namespace dubsar {
 namespace {
-constexpr TimestampNs kMs = 1'000'000;
+using test::kMs;
 
 TEST(OneEuro, AConstantStaysAndAStepConverges) {
   OneEuroVector filter;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 
+#include "tests/input/milliseconds.h"
+
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kMs = 1'000'000;
+using test::kMs;
 
 /// People before a screen: frames go through the keeper and the recognisers as in a session.
 class Scene {

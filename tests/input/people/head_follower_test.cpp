@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "input/simulated/script.h"
+#include "tests/input/milliseconds.h"
 
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kMs = 1'000'000;
+using test::kMs;
 
 HeadFrame head_at(TimestampNs time, const glm::dvec3& centre_m) {
   HeadFrame head;

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/input/milliseconds.h"
+
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kMs = 1'000'000;
+using test::kMs;
 
 TEST(OtherBodies, ABodyIsThereOnceHandsToldOfItForAWhileAndIsForgottenLater) {
   OtherBodies others;

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/input/milliseconds.h"
+
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kMs = 1'000'000;
+using test::kMs;
 
 HandFrame hand_at(std::uint32_t id, Chirality side, const glm::dvec3& at_m) {
   HandFrame hand;
@@ -16,7 +18,7 @@ HandFrame hand_at(std::uint32_t id, Chirality side, const glm::dvec3& at_m) {
   return hand;
 }
 
-HeadFrame head_at(std::uint32_t id, const glm::dvec3& at_m) {
+HeadFrame head_before(std::uint32_t id, const glm::dvec3& at_m) {
   HeadFrame head;
   head.id = id;
   head.tracked = true;
@@ -27,27 +29,27 @@ HeadFrame head_at(std::uint32_t id, const glm::dvec3& at_m) {
 
 TEST(HeadKeeper, TakesTheNearestAndMostCentralAndKeepsItWhenSomebodyComesNearer) {
   HeadKeeper keeper;
-  std::vector<HeadFrame> heads{head_at(1, {0.5, 0, 0.6}), head_at(2, {0.05, 0, 0.7})};
+  std::vector<HeadFrame> heads{head_before(1, {0.5, 0, 0.6}), head_before(2, {0.05, 0, 0.7})};
   ASSERT_NE(keeper.update(0, heads), nullptr);
   EXPECT_EQ(keeper.update(16 * kMs, heads)->id, 2u);
-  heads.push_back(head_at(3, {0.0, 0, 0.3}));
+  heads.push_back(head_before(3, {0.0, 0, 0.3}));
   EXPECT_EQ(keeper.update(32 * kMs, heads)->id, 2u);
 }
 
 TEST(HeadKeeper, KnowsAHeadAgainByItsPlaceAndLetsAnotherInAfterASecond) {
   HeadKeeper keeper;
-  const std::vector<HeadFrame> first{head_at(1, {0.1, 0, 0.6})};
+  const std::vector<HeadFrame> first{head_before(1, {0.1, 0, 0.6})};
   ASSERT_NE(keeper.update(0, first), nullptr);
-  const std::vector<HeadFrame> renamed{head_at(7, {0.15, 0, 0.6}), head_at(8, {-0.4, 0, 0.5})};
+  const std::vector<HeadFrame> renamed{head_before(7, {0.15, 0, 0.6}), head_before(8, {-0.4, 0, 0.5})};
   EXPECT_EQ(keeper.update(100 * kMs, renamed)->id, 7u);
-  const std::vector<HeadFrame> other{head_at(8, {-0.4, 0, 0.5})};
+  const std::vector<HeadFrame> other{head_before(8, {-0.4, 0, 0.5})};
   EXPECT_EQ(keeper.update(900 * kMs, other), nullptr);
   ASSERT_NE(keeper.update(1200 * kMs, other), nullptr);
   EXPECT_EQ(keeper.update(1216 * kMs, other)->id, 8u);
 }
 
 TEST(HeadKeeper, WhoLookedOnFromBesideMakesRoomForWhoStandsBeforeThePanel) {
-  const HeadFrame beside = head_at(1, {0.5, 0, 0.6}), before = head_at(2, {0.0, 0, 0.7});
+  const HeadFrame beside = head_before(1, {0.5, 0, 0.6}), before = head_before(2, {0.0, 0, 0.7});
   for (const bool rests : {true, false}) {
     HeadKeeper keeper;
     const std::vector<HeadFrame> alone{beside}, both{beside, before};
@@ -65,8 +67,8 @@ TEST(HandKeeper, AHandWhoseShoulderIsOnTheWrongSideOfTheHeadIsSomebodyElses) {
        {std::pair{0.1, true}, std::pair{-0.02, true}, std::pair{-0.15, false}, std::pair{0.34, false}}) {
     HandKeeper keeper;
     const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {x, 0, 0.3})};
-    std::vector<HeadFrame> heads{head_at(1, {0.0, 0, 0.7})};
-    if (!in) heads.push_back(head_at(2, {x < 0 ? -0.4 : 0.6, 0, 0.7}));  // else the tracker may have mistaken it
+    std::vector<HeadFrame> heads{head_before(1, {0.0, 0, 0.7})};
+    if (!in) heads.push_back(head_before(2, {x < 0 ? -0.4 : 0.6, 0, 0.7}));  // else the tracker may have mistaken it
     EXPECT_EQ(keeper.update(0, hands, heads, glm::dvec3(0.0, 0.0, 0.7))[0] != nullptr, in) << x;
   }
 }
@@ -117,7 +119,7 @@ TEST(HandKeeper, AHandThatReachesInFromTheSideIsIgnored) {
 }
 
 TEST(HandKeeper, AHandWhoseArmComesFromAnotherHeadIsIgnored) {
-  const std::vector<HeadFrame> heads{head_at(1, {0, 0, 0.6}), head_at(2, {0.4, 0, 0.6})};
+  const std::vector<HeadFrame> heads{head_before(1, {0, 0, 0.6}), head_before(2, {0.4, 0, 0.6})};
   const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.3, 0, 0.4})};
   HandKeeper with_heads, without;
   EXPECT_EQ(with_heads.update(0, hands, heads, glm::dvec3(0, 0, 0.6))[0], nullptr);
@@ -158,8 +160,8 @@ TEST(HandKeeper, WithoutACameraThoseWhoStandBesideHoldNothing) {
 
 TEST(HandKeeper, AHandThatTheTrackerTakesForTheOtherOneIsLetInWhereNobodyElseThereCouldHaveIt) {
   const std::vector<HandFrame> called_left{hand_at(1, Chirality::kLeft, {0.15, 0.0, 0.3})};
-  const std::vector<HeadFrame> alone{head_at(1, {0.0, 0.0, 0.7})};
-  const std::vector<HeadFrame> two{head_at(1, {0.0, 0.0, 0.7}), head_at(2, {0.4, 0.0, 0.7})};
+  const std::vector<HeadFrame> alone{head_before(1, {0.0, 0.0, 0.7})};
+  const std::vector<HeadFrame> two{head_before(1, {0.0, 0.0, 0.7}), head_before(2, {0.4, 0.0, 0.7})};
   HandKeeper keeper, in_a_crowd, without_a_camera;
   EXPECT_NE(keeper.update(0, called_left, alone, glm::dvec3(0.0, 0.0, 0.7))[0], nullptr);
   EXPECT_EQ(in_a_crowd.update(0, called_left, two, glm::dvec3(0.0, 0.0, 0.7))[0], nullptr) << "the other's left hand";
@@ -205,10 +207,10 @@ TEST(HandKeeper, TheOwnerMayLetTheHandSinkForAWhileAndNobodyElseTakesOver) {
 TEST(HandKeeper, AKeptHandThatTurnsOutToBeAnotherHeadsIsLetGoAfterAWhile) {
   HandKeeper keeper;
   const std::optional<glm::dvec3> kept_head(glm::dvec3(0.0, 0.0, 0.7));
-  std::vector<HeadFrame> heads{head_at(1, *kept_head)};
+  std::vector<HeadFrame> heads{head_before(1, *kept_head)};
   const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.3, 0, 0.3})};
   ASSERT_NE(keeper.update(0, hands, heads, kept_head)[0], nullptr) << "nobody else is seen";
-  heads.push_back(head_at(2, {0.48, 0, 0.7}));  // the body of the hand that comes stands at 0.43 m
+  heads.push_back(head_before(2, {0.48, 0, 0.7}));  // the body of the hand that comes stands at 0.43 m
   const std::vector<HandFrame> moved{hand_at(1, Chirality::kRight, {0.62, 0, 0.3})};
   EXPECT_NE(keeper.update(100 * kMs, moved, heads, kept_head)[0], nullptr) << "it may be noise";
   EXPECT_NE(keeper.update(300 * kMs, moved, heads, kept_head)[0], nullptr);
@@ -228,25 +230,25 @@ TEST(HandKeeper, ItIsSureWhoseHandItIsByHeadsByTheArmOrAfterAWhile) {
   for (int i = 1; i <= 40; ++i) beside.update(i * 100 * kMs, aslant, {}, {});
   EXPECT_TRUE(beside.standing()[0].sure) << "followed for four seconds";
   const glm::dvec3 kept_head(0.1, 0.0, 0.7);
-  std::vector<HeadFrame> heads{head_at(1, kept_head)};
+  std::vector<HeadFrame> heads{head_before(1, kept_head)};
   ASSERT_NE(watched.update(0, straight, heads, kept_head)[0], nullptr);
   EXPECT_TRUE(watched.standing()[0].sure) << "nobody else is there";
-  heads.push_back(head_at(2, {-0.22, 0, 0.75}));
+  heads.push_back(head_before(2, {-0.22, 0, 0.75}));
   ASSERT_NE(crowded.update(0, straight, heads, kept_head)[0], nullptr);
   EXPECT_FALSE(crowded.standing()[0].sure) << "another head is as near to that arm";
 }
 
 TEST(HandKeeper, ALeftHandThatMayBeTheRightHandOfSomebodyBesideIsNotSure) {
   const glm::dvec3 kept_head(0.0, 0.0, 0.7);
-  std::vector<HeadFrame> heads{head_at(1, kept_head)};
+  std::vector<HeadFrame> heads{head_before(1, kept_head)};
   const std::vector<HandFrame> called_left{hand_at(1, Chirality::kLeft, {-0.19, 0.0, 0.3})};
   HandKeeper alone, beside, far;
   ASSERT_NE(alone.update(0, called_left, heads, kept_head)[0], nullptr);
   EXPECT_TRUE(alone.standing()[0].sure);
-  heads.push_back(head_at(2, {-0.4, 0.0, 0.75}));  // whose right shoulder is where the kept head's left one is
+  heads.push_back(head_before(2, {-0.4, 0.0, 0.75}));  // whose right shoulder is where the kept head's left one is
   ASSERT_NE(beside.update(0, called_left, heads, kept_head)[0], nullptr);
   EXPECT_FALSE(beside.standing()[0].sure);
-  heads[1] = head_at(2, {0.4, 0.0, 0.75});
+  heads[1] = head_before(2, {0.4, 0.0, 0.75});
   ASSERT_NE(far.update(0, called_left, heads, kept_head)[0], nullptr);
   EXPECT_TRUE(far.standing()[0].sure) << "neither shoulder of the other one is there";
 }
@@ -266,7 +268,7 @@ TEST(HandKeeper, WhereNoHeadIsSeenHandsTellWhoIsBeside) {
 
 TEST(HandKeeper, AHandAtTheChinIsAtTheFace) {
   const glm::dvec3 kept_head(0.0, 0.1, 0.6);
-  const std::vector<HeadFrame> heads{head_at(1, kept_head)};
+  const std::vector<HeadFrame> heads{head_before(1, kept_head)};
   for (const bool at_chin : {true, false}) {
     HandKeeper keeper;
     const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.1, at_chin ? 0.0 : -0.1, at_chin ? 0.5 : 0.4})};

@@ -114,8 +114,8 @@ TEST(SimulatedPeople, AVisitorWithASpaceMouseTurnsTheViewToWhereItIsWished) {
       seen = navigator.view();
     }
     EXPECT_TRUE(source->finished()) << space_mouse;
-    constexpr double kRad = std::numbers::pi / 180.0;
-    const glm::dquat wished = turn_of({15 * kRad, 0, 0}) * turn_of({0, 40 * kRad, 0});
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    const glm::dquat wished = turn_of({15 * kDegree, 0, 0}) * turn_of({0, 40 * kDegree, 0});
     EXPECT_LE(turn_between_deg(seen.rotation, wished), 2.0) << space_mouse;
     EXPECT_NEAR(seen.zoom, 1.3, 0.03) << space_mouse;
     EXPECT_LE(turned_at_once, 3.0) << space_mouse;

@@ -5,10 +5,10 @@
 
 #include "devices/transport/sim_transport.h"
 #include "input/input_source.h"
+#include "tests/input/milliseconds.h"
 
 namespace dubsar::test {
 
-inline constexpr TimestampNs kMs = 1'000'000;
 inline constexpr TimestampNs kSecond = 1'000'000'000;
 
 struct SourceBench {

@@ -20,7 +20,7 @@ namespace dubsar {
 namespace {
 
 constexpr const char* kCascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_default.xml";
-constexpr int kWidth = 640, kHeight = 480;
+constexpr int kPhotoWidth = 640, kPhotoHeight = 480;
 
 PictureView view_of(const Image& image) { return {image.pixels.data(), image.width, image.height}; }
 
@@ -43,25 +43,25 @@ class FacePhotographs : public ::testing::Test {
   /// The photograph, `scale` times as large, with this point of it in the middle of a webcam's picture;
   /// floats, planes.
   std::vector<float> scene(const Image& photo, const glm::dvec2& centre, double scale) {
-    std::vector<float> planes(std::size_t{3} * kWidth * kWidth);
-    sampler_.sample(view_of(photo), {centre, kWidth / scale, 0.0}, kWidth, 1.0f, 0.0f, planes);
+    std::vector<float> planes(std::size_t{3} * kPhotoWidth * kPhotoWidth);
+    sampler_.sample(view_of(photo), {centre, kPhotoWidth / scale, 0.0}, kPhotoWidth, 1.0f, 0.0f, planes);
     return planes;
   }
   /// What a camera makes of it.
   Frame webcam(const std::vector<float>& planes, float noise_sd) {
     Frame frame;
-    frame.width = kWidth;
-    frame.height = kHeight;
+    frame.width = kPhotoWidth;
+    frame.height = kPhotoHeight;
     frame.format = PixelFormat::kRgb8;
     frame.pixels.resize(frame.view_bytes());
     std::size_t at = random_();
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x)
+    for (int y = 0; y < kPhotoHeight; ++y)
+      for (int x = 0; x < kPhotoWidth; ++x)
         for (int c = 0; c < 3; ++c) {
-          const std::size_t row =
-              static_cast<std::size_t>(c) * kWidth + static_cast<std::size_t>(y) + (kWidth - kHeight) / 2;
-          const float level = planes[row * kWidth + static_cast<std::size_t>(x)];
-          frame.pixels[(static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)) * 3 +
+          const std::size_t row = static_cast<std::size_t>(c) * kPhotoWidth + static_cast<std::size_t>(y) +
+                                  (kPhotoWidth - kPhotoHeight) / 2;
+          const float level = planes[row * kPhotoWidth + static_cast<std::size_t>(x)];
+          frame.pixels[(static_cast<std::size_t>(y) * kPhotoWidth + static_cast<std::size_t>(x)) * 3 +
                        static_cast<std::size_t>(c)] =
               static_cast<std::uint8_t>(std::clamp(level + noise_sd * noise_[at++ & (kNoise - 1)], 0.0f, 255.0f));
         }
@@ -151,7 +151,7 @@ TEST_F(FacePhotographs, AtSixtyCentimetresTheFilteredDepthIsStillWithinTenMillim
       FaceTrackerOptions options;
       // the face's yaw makes its pupils' distance shorter; what matters here is how still it is
       const double scale =
-          options.camera.focal_px(kWidth) * options.ipd_m / distance_m / glm::length(pupils.left - pupils.right);
+          options.camera.focal_px(kPhotoWidth) * options.ipd_m / distance_m / glm::length(pupils.left - pupils.right);
       std::array<std::vector<float>, 5> scenes;
       for (auto& planes : scenes)
         planes = scene(photo, 0.5 * (pupils.left + pupils.right) + glm::dvec2(shift(random_), shift(random_)) / scale,

@@ -26,7 +26,7 @@ HandPose pose_at(double t) {
   return pose;
 }
 
-double quantile(std::vector<double> values, double p) {
+double quantile_of(std::vector<double> values, double p) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(p * static_cast<double>(values.size() - 1))];
 }
@@ -51,14 +51,14 @@ TEST(HandSequence, AHandThatMovesTurnsAndClosesIsFollowedWithoutABreak) {
     depth_mm.push_back(std::abs(error.y));
     grab.push_back(std::abs(hands[0].grab_strength - pose.flexion[2]));
   }
-  EXPECT_LE(quantile(sideways_mm, 0.95), 2.0);
-  EXPECT_LE(quantile(sideways_mm, 1.0), 5.0);
-  EXPECT_LE(quantile(depth_mm, 0.95), 3.0);
-  EXPECT_LE(quantile(grab, 0.95), 0.1);
-  RecordProperty("sideways_95_mm", std::to_string(quantile(sideways_mm, 0.95)));
-  RecordProperty("sideways_most_mm", std::to_string(quantile(sideways_mm, 1.0)));
-  RecordProperty("depth_95_mm", std::to_string(quantile(depth_mm, 0.95)));
-  RecordProperty("grab_95", std::to_string(quantile(grab, 0.95)));
+  EXPECT_LE(quantile_of(sideways_mm, 0.95), 2.0);
+  EXPECT_LE(quantile_of(sideways_mm, 1.0), 5.0);
+  EXPECT_LE(quantile_of(depth_mm, 0.95), 3.0);
+  EXPECT_LE(quantile_of(grab, 0.95), 0.1);
+  RecordProperty("sideways_95_mm", std::to_string(quantile_of(sideways_mm, 0.95)));
+  RecordProperty("sideways_most_mm", std::to_string(quantile_of(sideways_mm, 1.0)));
+  RecordProperty("depth_95_mm", std::to_string(quantile_of(depth_mm, 0.95)));
+  RecordProperty("grab_95", std::to_string(quantile_of(grab, 0.95)));
 }
 
 TEST(HandSequence, ThumbAndIndexFingerThatComeTogetherAreSeen) {
@@ -81,12 +81,12 @@ TEST(HandSequence, ThumbAndIndexFingerThatComeTogetherAreSeen) {
     apart_mm.push_back(1e3 * std::abs(glm::distance(hand.tips_m[0], hand.tips_m[1]) - hands[0].pinch_distance_m));
     palm_mm.push_back(1e3 * glm::distance(hands[0].palm.position_m, hand.palm_m));
   }
-  EXPECT_LE(quantile(apart_mm, 0.5), 2.0);
-  EXPECT_LE(quantile(apart_mm, 0.95), 8.0);
-  EXPECT_LE(quantile(palm_mm, 0.95), 5.0);
-  RecordProperty("apart_50_mm", std::to_string(quantile(apart_mm, 0.5)));
-  RecordProperty("apart_95_mm", std::to_string(quantile(apart_mm, 0.95)));
-  RecordProperty("palm_95_mm", std::to_string(quantile(palm_mm, 0.95)));
+  EXPECT_LE(quantile_of(apart_mm, 0.5), 2.0);
+  EXPECT_LE(quantile_of(apart_mm, 0.95), 8.0);
+  EXPECT_LE(quantile_of(palm_mm, 0.95), 5.0);
+  RecordProperty("apart_50_mm", std::to_string(quantile_of(apart_mm, 0.5)));
+  RecordProperty("apart_95_mm", std::to_string(quantile_of(apart_mm, 0.95)));
+  RecordProperty("palm_95_mm", std::to_string(quantile_of(palm_mm, 0.95)));
 }
 
 }  // namespace
