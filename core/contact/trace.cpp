@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/base/system/large_blocks.h"
+#include "core/base/system/budget.h"
 #include "core/base/system/log.h"
 #include "core/contact/band.h"
 #include "core/contact/clay_cavities.h"
@@ -118,9 +118,9 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
     log_info("contact: the envelope's clay has {:.1f} % of the density of the tablet's",
              100.0f * clays->envelope / clays->tablet);
   }
-  return_free_memory();  // of all steps the next holds the most, and leaves the most pieces behind
+  keep_below_limit();  // of all steps the next holds the most, and leaves the most pieces behind
   DUBSAR_ASSIGN(const std::vector<ClaySide> side, divide(model, band, dips, beside, votes, progress));
-  return_free_memory();
+  keep_below_limit();
   const DividedClay clay = divided(band, dips, beside, side);
   DUBSAR_ASSIGN(const ContactSheet sheet, sheet_of_cut(model, clay, values,
                                                        {options.film_margin, kMostMove, options.blur_variance, clays,

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/base/system/large_blocks.h"
+#include "core/base/system/budget.h"
 #include "core/base/system/log.h"
 #include "core/exa/offsets/settle_labelled.h"
 #include "core/filter/resample.h"
@@ -46,7 +46,7 @@ Result<ClosedModel> close_contact(SurfaceModel model, const ClosingOptions& opti
                                         : traced_in_scan(closed.model, options.rules, imported, run.progress));
   if (options.smooth) contact.why = *options.smooth;
   if (contact.labelled) {
-    return_free_memory();
+    keep_below_limit();
     DUBSAR_ASSIGN(const LabelledSettling settled,
                   settle_labelled(closed.model, std::move(*contact.labelled), options.settle.curvature,
                                   options.settle.exact_normals, run.progress));

@@ -212,7 +212,7 @@ Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& prog
   for (const StagePlan& stage : kRunPlan) {
     if (!stage.wanted(run.plan.run)) continue;
     if (stage.stage > RunStage::kContact) run.close_scan();
-    if (memory_limit() > 0) return_free_memory();
+    keep_below_limit();
     DUBSAR_TRY(run.perform(stage.stage));
   }
   PipelineResult result{std::move(run.separated.model), {}, std::move(run.product.mesh)};

@@ -38,6 +38,10 @@ void set_memory_limit(std::uint64_t bytes) noexcept { g_limit = bytes; }
 
 std::uint64_t memory_limit() noexcept { return g_limit; }
 
+void keep_below_limit() noexcept {
+  if (memory_limit() > 0) return_free_memory();
+}
+
 std::uint64_t Budget::limit_bytes() const {
   return memory_bytes > 0 ? memory_bytes : available_memory_bytes() / 10 * 8;
 }

@@ -32,6 +32,9 @@ std::uint64_t available_memory_bytes();
 void set_memory_limit(std::uint64_t bytes) noexcept;
 /// What was set; 0: nothing.
 std::uint64_t memory_limit() noexcept;
+/// Between steps that take much: where a limit is set, what is free goes back to the system (return_free_memory());
+/// else it stays for the next step, for which its pages would have to be cleared again.
+void keep_below_limit() noexcept;
 
 /// Checks that `dims` are 1..max_dimension each and their product times `element_bytes` fits the voxel count limit.
 /// Returns the number of elements. `what` names the object in the error text.
