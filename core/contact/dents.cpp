@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 #include <utility>
@@ -16,8 +15,8 @@ constexpr int kNormalRounds = 20;  ///< of averages, so that the normals in a we
 constexpr int kSpanRounds = 60;    ///< a sheet spans what is some 12 steps wide
 constexpr float kDent = 1.2f;      ///< steps below it
 constexpr std::size_t kNearest = 64;
-constexpr float kDentSignificance = 2.5f;
-constexpr float kMostDentStrength = 2.5f;  ///< of one vertex: the fringe of a pore is no film, however dark
+constexpr double kLeastDentLikelihood = 3.1;  ///< log_likelihood_of_film() of a dent: 2.5 deviations above plain clay
+constexpr float kMostDentStrength = 2.5f;     ///< of one vertex: the fringe of a pore is no film, however dark
 
 }  // namespace
 
@@ -65,14 +64,13 @@ std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings
       if (last == 0 || std::find(nearest.begin(), nearest.end(), w) == nearest.end()) nearest.push_back(w);
     };
     list(static_cast<std::uint32_t>(i));
-    float sum = 0.0f;
+    double sum = 0.0;
     for (std::size_t k = 0; k < nearest.size(); ++k) {
-      sum += std::min(mesh.strength[nearest[k]], kMostDentStrength);
+      sum += static_cast<double>(std::min(mesh.strength[nearest[k]], kMostDentStrength));
       for (const std::uint32_t w : rings.added[nearest[k]])
         if (nearest.size() < kNearest && in_dent(w)) list(w);
     }
-    const auto count = static_cast<float>(nearest.size());
-    by_chance[i] = sum / count < plain.strength + kDentSignificance * plain.deviation / std::sqrt(count);
+    by_chance[i] = log_likelihood_of_film(sum, nearest.size(), plain) < kLeastDentLikelihood;
   });
   std::vector<bool> doubtful(depth.size(), false);
   for (std::size_t i = 0; i < doubtful.size(); ++i) {

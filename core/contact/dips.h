@@ -1,6 +1,7 @@
 #pragma once
 // Films of air between clay and clay: where the density dips across the contact, and how far out of the noise.
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -49,6 +50,17 @@ struct PlainClay {
   float strength = 1.1f;   ///< mean
   float deviation = 2.0f;  ///< of the mean of n neighbours, times the root of n
 };
+
+/// Mean strength of dips above that of plain clay in the faintest film that is looked for, of a fifth of a voxel.
+inline constexpr float kFaintFilm = 0.6f;
+
+/// Logarithm of how much likelier it is that `count` neighbours along a cut, whose strengths are `sum` together, lie in
+/// a faint film than in plain clay: with means kFaintFilm apart, each adds to it from the middle between them on.
+inline double log_likelihood_of_film(double sum, std::size_t count, const PlainClay& plain) {
+  const double faint = static_cast<double>(kFaintFilm), deviation = static_cast<double>(plain.deviation),
+               middle = static_cast<double>(plain.strength) + 0.5 * faint;
+  return (sum - static_cast<double>(count) * middle) * faint / (deviation * deviation);
+}
 
 struct Dips {
   /// Of each node: how much denser the clay on both sides is on average than a disk through the node, at the best of

@@ -21,11 +21,9 @@ constexpr int kEvidenceRounds = 25;
 /// Rings beside the surface where the dip may be that of its air. They count where there is nothing else.
 constexpr int kRim = 3;
 constexpr float kRimWeight = 0.02f, kRimMargin = 0.4f;  ///< at most, above plain clay
-/// Vertices of a film that is believed, and of a clear one; a wedge has 300 to 600, and chance makes no clear film.
-constexpr std::size_t kLeastFilm = 1500, kLeastClearFilm = 400;
-constexpr float kClearMargin = 0.9f;  ///< above plain clay
-/// Whole patches: how much more than clay without a film one has, at least and by vertices (deviations of the mean).
-constexpr float kPatchMargin = 0.3f, kPatchSigmas = 4.0f;
+/// log_likelihood_of_film() from which on a region is believed that was chosen because it is dark: of 1,800 that chance
+/// made (docs/evidence.md) the likeliest has 72. In a patch as a whole nothing was chosen, and the likeliest has 9.
+constexpr double kLeastOfRegion = 80.0, kLeastOfPatch = 16.0;
 constexpr float kWithinMargin = 0.1f;  ///< of a film in such a patch, above plain clay
 constexpr float kLeastStep = 0.5f;     ///< of the difference of the clays
 constexpr int kFilmRounds = 1;
@@ -47,8 +45,7 @@ std::vector<bool> rim_of(const InterfaceRings& rings) {
 }
 
 std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings& rings, const PlainClay& plain,
-                                 ContactRules rules) {
-  const std::vector<bool> rim = rules.has(ContactRule::kRim) ? rim_of(rings) : std::vector<bool>(rings.all.size());
+                                 const std::vector<bool>& rim) {
   std::vector<std::array<float, 2>> weighed(mesh.strength.size());  // sum, weight
   for (std::size_t i = 0; i < weighed.size(); ++i) {
     const float weight = rim[i] ? kRimWeight : 1.0f;
@@ -82,41 +79,23 @@ std::vector<float> mean_steps(const InterfaceMesh& mesh, const InterfaceRings& r
   return steps;
 }
 
-/// Vertices of patches that are a film as a whole, as far as their mean can tell it: nothing was chosen in it, so that
-/// chance is small even where the patch is.
-std::vector<bool> film_patches(const InterfaceMesh& mesh, const InterfaceRings& rings, const PlainClay& plain,
-                               ContactRules rules) {
-  const std::vector<bool> rim = rim_of(rings);
-  std::vector<bool> film(rim.size(), false);
-  if (!rules.has(ContactRule::kFilmPatches)) return film;
-  each_piece(rings, std::vector<bool>(rim.size(), true), [&](const std::vector<std::uint32_t>& patch) {
-    float sum = 0.0f, count = 0.0f;
-    for (const std::uint32_t v : patch)
+/// The vertices of those pieces of `belongs` that have `least` and more of log_likelihood_of_film(). The rim has no
+/// say.
+std::vector<bool> likely_films(const InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<bool>& rim,
+                               const PlainClay& plain, const std::vector<bool>& belongs, double least) {
+  std::vector<bool> film(belongs.size(), false);
+  each_piece(rings, belongs, [&](const std::vector<std::uint32_t>& piece) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const std::uint32_t v : piece)
       if (!rim[v]) {
-        sum += mesh.strength[v];
-        count += 1.0f;
+        sum += static_cast<double>(mesh.strength[v]);
+        ++count;
       }
-    if (count < 1.0f ||
-        sum < count * (plain.strength + std::max(kPatchMargin, kPatchSigmas * plain.deviation / std::sqrt(count))))
-      return;
-    for (const std::uint32_t v : patch) film[v] = true;
+    if (log_likelihood_of_film(sum, count, plain) < least) return;
+    for (const std::uint32_t v : piece) film[v] = true;
   });
   return film;
-}
-
-void drop_small_films(const InterfaceRings& rings, const std::vector<float>& strength, const PlainClay& plain,
-                      ContactRules rules, std::vector<std::uint8_t>& evidence) {
-  if (!rules.has(ContactRule::kSmallFilms)) return;
-  std::vector<bool> film(evidence.size());
-  for (std::size_t i = 0; i < film.size(); ++i) film[i] = evidence[i] == kFilm;
-  each_piece(rings, film, [&](const std::vector<std::uint32_t>& piece) {
-    float sum = 0.0f;
-    for (const std::uint32_t v : piece) sum += strength[v];
-    const bool clear = rules.has(ContactRule::kClearFilms) &&
-                       sum >= (plain.strength + kClearMargin) * static_cast<float>(piece.size());
-    if (piece.size() < (clear ? kLeastClearFilm : kLeastFilm))
-      for (const std::uint32_t v : piece) evidence[v] = kInferred;
-  });
 }
 
 /// Films by one round, what is inferred until it is a membrane between them and the surface.
@@ -154,14 +133,22 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
                                           const BandDensity& density, const ShapeOptions& options) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
   const InterfaceRings rings(mesh, dual);
-  const std::vector<float> strength = mean_strength(mesh, rings, options.plain, options.rules);
+  const std::vector<bool> rim =
+      options.rules.has(ContactRule::kRim) ? rim_of(rings) : std::vector<bool>(rings.all.size());
+  const std::vector<float> strength = mean_strength(mesh, rings, options.plain, rim);
   std::vector<std::uint8_t> evidence(strength.size());
-  const std::vector<bool> in_film_patch = film_patches(mesh, rings, options.plain, options.rules);
-  for (std::size_t i = 0; i < evidence.size(); ++i)
-    evidence[i] = strength[i] >= options.plain.strength + (in_film_patch[i] ? kWithinMargin : options.film_margin)
-                      ? kFilm
-                      : kInferred;
-  drop_small_films(rings, strength, options.plain, options.rules, evidence);
+  const auto likely = [&](const std::vector<bool>& belongs, double least) {
+    return likely_films(mesh, rings, rim, options.plain, belongs, least);
+  };
+  const auto above = [&](std::size_t i, float margin) { return strength[i] >= options.plain.strength + margin; };
+  std::vector<bool> film(strength.size()), patch(strength.size(), true);
+  for (std::size_t i = 0; i < film.size(); ++i) film[i] = above(i, options.film_margin);
+  if (options.rules.has(ContactRule::kLikelihood)) {
+    film = likely(film, kLeastOfRegion);
+    patch = likely(patch, kLeastOfPatch);
+    for (std::size_t i = 0; i < film.size(); ++i) film[i] = film[i] || (patch[i] && above(i, kWithinMargin));
+  }
+  for (std::size_t i = 0; i < film.size(); ++i) evidence[i] = film[i] ? kFilm : kInferred;
   std::vector<bool> clay_step(evidence.size(), false);  // not a film: where one clay ends and the other begins
   if (options.clays) {
     const std::vector<float> steps = mean_steps(mesh, rings, dual_positions, density, *options.clays);
@@ -178,7 +165,6 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? 1.0f : 0.0f;
   follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
               {.blur_variance = options.blur_variance, .clays = options.clays, .rules = options.rules});
-  std::vector<bool> film(evidence.size());
   for (std::size_t i = 0; i < film.size(); ++i) film[i] = evidence[i] == kFilm && !clay_step[i];
   const std::vector<bool> doubtful = doubtful_dents(mesh, rings, dual_positions, film, options.plain, options.rules);
   for (std::size_t i = 0; i < evidence.size(); ++i)

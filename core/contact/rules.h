@@ -9,26 +9,18 @@
 namespace dubsar {
 
 enum class ContactRule : std::uint8_t {
-  kDents,        ///< a dent must prove itself (dents.h)
-  kSmallFilms,   ///< films are as large as a wedge (interface_shape.h)
-  kClearFilms,   ///< clear ones may be smaller (interface_shape.h)
-  kFilmPatches,  ///< patches that are a film as a whole (interface_shape.h)
-  kRim,          ///< dips beside free surface count less (interface_shape.h)
-  kSettle,       ///< where dips say little the contact becomes smooth (film_refine.h)
-  kRounding,     ///< tips of dents are followed farther (film_refine.h)
-  kHollow,       ///< out of the hollow of what is bent (film_refine.h)
-  kLooks,        ///< patches are moved to their ground more than once (recentre.h)
+  kDents,       ///< a dent must prove itself (dents.h)
+  kLikelihood,  ///< films are likelier than chance (interface_shape.h)
+  kRim,         ///< dips beside free surface count less (interface_shape.h)
+  kSettle,      ///< where dips say little the contact becomes smooth (film_refine.h)
+  kRounding,    ///< tips of dents are followed farther (film_refine.h)
+  kHollow,      ///< out of the hollow of what is bent (film_refine.h)
+  kLooks,       ///< patches are moved to their ground more than once (recentre.h)
 };
 
 inline constexpr EnumName<ContactRule> kContactRules[] = {
-    {ContactRule::kDents, "dents"},
-    {ContactRule::kSmallFilms, "small films"},
-    {ContactRule::kClearFilms, "clear films"},
-    {ContactRule::kFilmPatches, "film patches"},
-    {ContactRule::kRim, "rim"},
-    {ContactRule::kSettle, "settle"},
-    {ContactRule::kRounding, "rounding"},
-    {ContactRule::kHollow, "hollow"},
+    {ContactRule::kDents, "dents"},   {ContactRule::kLikelihood, "likelihood"}, {ContactRule::kRim, "rim"},
+    {ContactRule::kSettle, "settle"}, {ContactRule::kRounding, "rounding"},     {ContactRule::kHollow, "hollow"},
     {ContactRule::kLooks, "looks"},
 };
 static_assert(names_all(kContactRules, static_cast<std::size_t>(ContactRule::kLooks) + 1));
