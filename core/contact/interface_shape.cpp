@@ -21,7 +21,7 @@ constexpr int kEvidenceRounds = 25;
 /// Rings beside the surface where the dip may be that of its air. They count where there is nothing else.
 constexpr int kRim = 3;
 constexpr float kRimWeight = 0.02f, kRimMargin = 0.4f;  ///< at most, above plain clay
-/// log_likelihood_of_film() from which on a region is believed that was chosen because it is dark: of 1,800 that chance
+/// log_likelihood_of_film() from which on a region is believed that was chosen because it is dark: of 1,287 that chance
 /// made (docs/evidence.md) the likeliest has 72. In a patch as a whole nothing was chosen, and the likeliest has 9.
 constexpr double kLeastOfRegion = 80.0, kLeastOfPatch = 16.0;
 constexpr float kWithinMargin = 0.1f;  ///< of a film in such a patch, above plain clay
@@ -142,7 +142,7 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   };
   const auto above = [&](std::size_t i, float margin) { return strength[i] >= options.plain.strength + margin; };
   std::vector<bool> film(strength.size()), patch(strength.size(), true);
-  for (std::size_t i = 0; i < film.size(); ++i) film[i] = above(i, options.film_margin);
+  for (std::size_t i = 0; i < film.size(); ++i) film[i] = above(i, 0.5f * kFaintFilm);
   if (options.rules.has(ContactRule::kLikelihood)) {
     film = likely(film, kLeastOfRegion);
     patch = likely(patch, kLeastOfPatch);

@@ -13,7 +13,6 @@
 namespace dubsar {
 
 struct ShapeOptions {
-  float film_margin = 0.3f;     ///< mean of dips above that of plain clay from which on a film is believed
   float most = 1.5f;            ///< steps that inferred contact is moved
   float blur_variance = 0.42f;  ///< of the scan
   std::optional<ClayContrast> clays = std::nullopt;
@@ -22,10 +21,11 @@ struct ShapeOptions {
   ContactRules rules{};
 };
 
-/// Evidence of the added vertices (evidence.h): film where the strength of the dip, averaged far along the contact and
-/// without its rim, is `film_margin` above that of plain clay over a region as large as a wedge, or where the clays
-/// differ and their densities around it say so, else inferred. Films are followed in the density (film_refine.h); what
-/// is inferred becomes a membrane between them and the surface, no farther than `most` steps from where it was.
+/// Evidence of the added vertices (evidence.h): film where the dips, averaged far along the contact and without its
+/// rim, are likelier those of a faint film than of plain clay, in a region whose log_likelihood_of_film() (dips.h) is
+/// more than chance makes anywhere, or, less strictly, in a patch whose is so as a whole; or where the clays differ and
+/// their densities around it say so; else inferred. Films are followed in the density (film_refine.h); what is inferred
+/// becomes a membrane between them and the surface, no farther than `most` steps from where it was.
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
                                           const BandDensity& density, const ShapeOptions& options);
 

@@ -122,10 +122,10 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(const std::vector<ClaySide> side, divide(model, band, dips, beside, votes, progress));
   keep_below_limit();
   const DividedClay clay = divided(band, dips, beside, side);
-  DUBSAR_ASSIGN(const ContactSheet sheet, sheet_of_cut(model, clay, values,
-                                                       {options.film_margin, kMostMove, options.blur_variance, clays,
-                                                        dips.deviation, dips.plain, options.rules},
-                                                       progress));
+  DUBSAR_ASSIGN(
+      const ContactSheet sheet,
+      sheet_of_cut(model, clay, values,
+                   {kMostMove, options.blur_variance, clays, dips.deviation, dips.plain, options.rules}, progress));
   values = {};
   DUBSAR_TRY(lay(model, clay, sheet, report, progress));
   report.traced = true;

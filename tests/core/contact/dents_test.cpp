@@ -83,5 +83,21 @@ TEST(DoubtfulDents, AreTheSameForAnyNumberOfThreads) {
   set_thread_count(0);
 }
 
+/// Means of n neighbours are as good as normal around that of a film or of clay: the ratio of the two densities there.
+TEST(LikelihoodOfFilm, IsTheRatioOfTheDensitiesOfTheirMean) {
+  const PlainClay plain{.strength = 0.8f, .deviation = 1.5f};
+  const auto logarithm_of_normal = [](double x, double mean, double deviation) {
+    return -0.5 * (x - mean) * (x - mean) / (deviation * deviation) - std::log(deviation * std::sqrt(2.0 * M_PI));
+  };
+  const double clay = static_cast<double>(plain.strength), film = clay + static_cast<double>(kFaintFilm);
+  for (const std::size_t count : {std::size_t{1}, std::size_t{64}, std::size_t{5000}})
+    for (const double mean : {-1.0, 0.8, 1.2, 3.0}) {
+      const double n = static_cast<double>(count), of_mean = 1.5 / std::sqrt(n);
+      const double ratio = logarithm_of_normal(mean, film, of_mean) - logarithm_of_normal(mean, clay, of_mean);
+      EXPECT_NEAR(log_likelihood_of_film(n * mean, count, plain), ratio, 1e-6 * (1.0 + std::abs(ratio)))
+          << count << " of " << mean;
+    }
+}
+
 }  // namespace
 }  // namespace dubsar
