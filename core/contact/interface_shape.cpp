@@ -22,7 +22,8 @@ constexpr int kEvidenceRounds = 25;
 constexpr int kRim = 3;
 constexpr float kRimWeight = 0.02f, kRimMargin = 0.4f;  ///< at most, above plain clay
 /// log_likelihood_of_film() from which on a region is believed that was chosen because it is dark: of 1,287 that chance
-/// made (docs/evidence.md) the likeliest has 72. In a patch as a whole nothing was chosen, and the likeliest has 9.
+/// made (docs/evidence.md) all but one have at most 72. In a patch as a whole nothing was chosen, and the likeliest
+/// has 9.
 constexpr double kLeastOfRegion = 80.0, kLeastOfPatch = 16.0;
 constexpr float kWithinMargin = 0.1f;  ///< of a film in such a patch, above plain clay
 constexpr float kLeastStep = 0.5f;     ///< of the difference of the clays
