@@ -15,7 +15,7 @@ constexpr int kNormalRounds = 20;  ///< of averages, so that the normals in a we
 constexpr int kSpanRounds = 60;    ///< a sheet spans what is some 12 steps wide
 constexpr float kDent = 1.2f;      ///< steps below it
 constexpr std::size_t kNearest = 64;
-constexpr double kLeastDentLikelihood = 3.1;  ///< log_likelihood_of_film() of a dent: 2.5 deviations above plain clay
+constexpr double kLeastDentLikelihood = 3.1;  ///< log_likelihood_of_film() of a dent that is there
 constexpr float kMostDentStrength = 2.5f;     ///< of one vertex: the fringe of a pore is no film, however dark
 
 }  // namespace

@@ -22,7 +22,6 @@ struct ContactOptions {
   bool halve_first = true;
   float reach = 12.0f;     ///< of the search from the smooth patch, grid steps: the deepest wedge
   float out_reach = 8.0f;  ///< the same into the envelope, where the two clays are not seen to differ
-  /// Mean strength of dips around a vertex (dips.h) above that of plain clay from which on a film is believed.
   /// Variance of the scan's edges, voxels squared (core/filter/edge_spread.h); this is that of a good scan.
   float blur_variance = 0.42f;
   /// Deviation of dips that is taken for at least, grey values: however little noise there is, reconstructions make
