@@ -97,14 +97,9 @@ class Follower {
         density_(density),
         options_(options),
         start_(mesh.added),
-        share_(mesh.added.size(), 0.0f),
+        share_(follows.share),
         step_(follows.step),
         trust_(mesh.added.size(), 0.0f) {
-    const auto at_rim = [&](std::size_t i) { return rings.all[i].size() != rings.added[i].size(); };
-    for (std::size_t i = 0; i < share_.size(); ++i) {
-      if (follows.share[i] <= 0.0f || at_rim(i)) continue;
-      share_[i] = follows.share[i];
-    }
     find_near();
   }
 
@@ -281,7 +276,7 @@ class Follower {
   const BandDensity& density_;
   const FollowOptions& options_;
   std::vector<glm::vec3> start_, normal_;
-  std::vector<float> share_;  ///< of every move: less at the rim
+  const std::vector<float>& share_;  ///< of every move
   const std::vector<bool>& step_;
   std::vector<std::uint32_t> near_;  ///< what is looked at
   std::vector<float> trust_;         ///< in the place of each dip, 0..1

@@ -28,9 +28,8 @@ struct FollowOptions {
 };
 
 /// Moves the added vertices. Dips that do not stand out of the noise, as parallel sheets in the clay on both sides show
-/// it, move little, and the contact is smooth there. `dual_positions` are those of the surface beside the contact; they
-/// stay, and so do vertices beside them. No triangle turns over. About 35 us a vertex; the same for any number of
-/// threads.
+/// it, move little, and the contact is smooth there. `dual_positions` are those of the surface beside the contact: they
+/// stay. No triangle turns over. About 35 us a vertex; the same for any number of threads.
 void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
                  const Following& follows, const BandDensity& density, const FollowOptions& options);
 

@@ -84,7 +84,7 @@ RestPieces rest_pieces(const SurfaceModel& model, const std::vector<BandFace>& f
 }
 
 std::vector<ClayCavity> cavities_off_contact(const RestPieces& pieces, const ContactBand& band,
-                                             const std::vector<BandFace>& faces) {
+                                             const std::vector<BandFace>& faces, const std::vector<float>& strength) {
   std::vector<Extent> extents(pieces.all.size());
   std::vector<ClayCavity> around(pieces.all.size());
   for (const BandFace& face : faces) {
@@ -98,7 +98,7 @@ std::vector<ClayCavity> cavities_off_contact(const RestPieces& pieces, const Con
     if (pieces.all[i].volume >= 0.0 || extents[i].away() <= extents[i].across()) continue;
     std::sort(around[i].begin(), around[i].end());
     around[i].erase(std::unique(around[i].begin(), around[i].end()), around[i].end());
-    off.push_back(std::move(around[i]));
+    if (!lies_in_film(band, strength, around[i])) off.push_back(std::move(around[i]));
   }
   return off;
 }

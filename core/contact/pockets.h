@@ -42,9 +42,10 @@ RestPieces rest_pieces(const SurfaceModel& model, const std::vector<BandFace>& f
 
 /// Closed cavities that do not open to the contact: pores of the clay. The mouth of a pocket lies where the clays meet,
 /// and the patches miss that by less than the pocket is deep; a cavity that is farther from every patch than it
-/// reaches across the contact is none. By their first nodes; the same for any number of threads.
+/// reaches across the contact is none, unless it lies in a film. `strength`: of the dips, of all nodes. By their first
+/// nodes; the same for any number of threads.
 std::vector<ClayCavity> cavities_off_contact(const RestPieces& pieces, const ContactBand& band,
-                                             const std::vector<BandFace>& faces);
+                                             const std::vector<BandFace>& faces, const std::vector<float>& strength);
 
 /// Faces of tablet and envelope away from the rim of the patches are certain; those at the rim and those of closed
 /// pockets vote by where they look. Those of cavities off the contact say nothing.

@@ -40,11 +40,12 @@ struct SurfaceBeside {
   std::vector<ClayCavity> pores;
   ClayBeyond beyond;
 
-  static Result<SurfaceBeside> find(const SurfaceModel& model, const ContactBand& band) {
+  static Result<SurfaceBeside> find(const SurfaceModel& model, const ContactBand& band,
+                                    const std::vector<float>& strength) {
     DUBSAR_ASSIGN(EdgeIndex index, EdgeIndex::create(model.samples));
     std::vector<BandFace> faces = faces_of_band(model, index, band);
     RestPieces rest = rest_pieces(model, faces);
-    std::vector<ClayCavity> pores = cavities_off_contact(rest, band, faces);
+    std::vector<ClayCavity> pores = cavities_off_contact(rest, band, faces, strength);
     return SurfaceBeside{std::move(index), std::move(faces), std::move(rest), std::move(pores),
                          ClayBeyond(model.samples.signs, band)};
   }
@@ -107,9 +108,9 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   if (clays && std::abs(clays->step()) < options.least_clay_step) clays.reset();
   if (!clays) band.trim_envelope(options.out_reach);
   report.points = static_cast<std::int64_t>(band.nodes.size());
-  DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band));
   DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress, options.least_deviation));
   values.drop_raw();
+  DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band, dips.strength));
   report.clays_differ = clays.has_value();
   std::vector<float> votes;
   if (clays) {
@@ -141,9 +142,9 @@ Result<ContactReport> follow_patches(SurfaceModel& model, Progress& progress) {
   DUBSAR_ASSIGN(const ContactBand band,
                 ContactBand::make(model.samples.signs, std::move(samples), kPatchBand, progress));
   report.points = static_cast<std::int64_t>(band.nodes.size());
-  DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band));
   Dips nothing;
   nothing.strength.assign(band.nodes.size(), 0.0f);
+  DUBSAR_ASSIGN(const SurfaceBeside beside, SurfaceBeside::find(model, band, nothing.strength));
   std::vector<float> votes(band.nodes.size(), 0.0f);
   for (std::size_t n = 0; n < votes.size(); ++n)
     if (!band.samples[band.nodes[n].sample].at_rim)

@@ -31,7 +31,7 @@ enum class Owner : std::uint8_t { kTablet, kEnvelope };
 
 /// What became of a wedge when the envelope was put on.
 enum class WedgeCase : std::uint8_t {
-  kFree,    ///< air from its place to its deepest point
+  kFree,    ///< air from its place to its deepest point, or a gap that follows it and is no film
   kPocket,  ///< the envelope bridges it: air inside, at least half of its depth, closed above
   kFilm,    ///< a film of air along its walls
   kFilled,  ///< clay of the envelope in it, and no air, or air only at the bottom

@@ -171,10 +171,9 @@ void PhantomBuilder::measure_wedges() {
       air += in_air;
       lo = hi;
     }
-    if (wedge.owner == Owner::kTablet && !wedge.open)
-      wedge.state = p_.options_.contact == Contact::kFilm ? WedgeCase::kFilm
-                    : 2 * air >= steps                    ? WedgeCase::kPocket
-                                                          : WedgeCase::kFilled;
+    const bool film = p_.options_.contact == Contact::kFilm;  // as wide as the gap, away from the contact
+    if (wedge.owner == Owner::kTablet && !wedge.open && (!film || p_.in_contact(wedge.position)))
+      wedge.state = film ? WedgeCase::kFilm : 2 * air >= steps ? WedgeCase::kPocket : WedgeCase::kFilled;
     for (int i = 0; i < 30; ++i) {
       const double middle = 0.5 * (lo + hi);
       (field(middle)[0] > 0.0f ? lo : hi) = middle;

@@ -48,6 +48,17 @@ struct CavityScene {
   }
 
   RestPieces rest() const { return rest_pieces(model, faces); }
+  /// With dips of the strength 3.5 where `dark` says so, and none elsewhere.
+  template <class Dark>
+  std::vector<ClayCavity> off_contact(const Dark& dark) const {
+    std::vector<float> strength(band.nodes.size(), 0.0f);
+    for (std::uint32_t n = 0; n < strength.size(); ++n)
+      if (dark(glm::vec3(band.point(n)))) strength[n] = 3.5f;
+    return cavities_off_contact(rest(), band, faces, strength);
+  }
+  std::vector<ClayCavity> off_contact() const {
+    return off_contact([](const glm::vec3&) { return false; });
+  }
 
  private:
   static SurfaceModel make(const scene::Field& air) {
@@ -72,7 +83,8 @@ struct CavityScene {
   }
 };
 
-float pore(const glm::vec3& p) { return scene::ball(p, {38.3f, 32.2f, kPatchPlane - 7.6f}, 2.2f); }
+constexpr glm::vec3 kPore{38.3f, 32.2f, kPatchPlane - 7.6f};
+float pore(const glm::vec3& p) { return scene::ball(p, kPore, 2.2f); }
 
 TEST(RestPieces, APoreIsOneClosedPieceOfItsVolumeWhoseFacesAreMutuallyBesideEachOther) {
   const CavityScene scene(pore);
@@ -95,7 +107,7 @@ TEST(CavitiesOffContact, APoreInTheClayIsOneAndAWedgeThatOpensToTheContactIsNot)
   const CavityScene scene([](const glm::vec3& p) {
     return std::max(pore(p), wedge(p, {24.2f, 32.1f, kPatchPlane + 0.3f}));
   });
-  const auto off = cavities_off_contact(scene.rest(), scene.band, scene.faces);
+  const auto off = scene.off_contact();
   ASSERT_EQ(off.size(), 1u);
   const auto [low, high] = scene.heights(off[0]);
   EXPECT_GE(low, 20);
@@ -104,12 +116,25 @@ TEST(CavitiesOffContact, APoreInTheClayIsOneAndAWedgeThatOpensToTheContactIsNot)
 
 TEST(CavitiesOffContact, APocketOnAPatchThatMissesItsMouthIsNone) {
   const CavityScene scene([](const glm::vec3& p) { return wedge(p, {32.2f, 32.1f, kPatchPlane - 2.7f}); });
-  EXPECT_TRUE(cavities_off_contact(scene.rest(), scene.band, scene.faces).empty());
+  EXPECT_TRUE(scene.off_contact().empty());
+}
+
+TEST(CavitiesOffContact, WhereAFilmIsWidestThereIsNone) {
+  const CavityScene scene(pore);
+  const glm::vec3 across = glm::normalize(glm::vec3(0.6f, 0.3f, 1.0f));
+  const auto off_sheet = [&](const glm::vec3& p) { return std::abs(glm::dot(p - kPore, across)); };
+  EXPECT_TRUE(scene.off_contact([&](const glm::vec3& p) { return off_sheet(p) < 0.7f; }).empty());
+  const auto stalk = [&](const glm::vec3& p) { return glm::length(glm::cross(p - kPore, across)) < 1.5f; };
+  EXPECT_EQ(scene.off_contact(stalk).size(), 1u) << "straw";
+  const auto beside = [&](const glm::vec3& p) { return off_sheet(p) > 8.2f && off_sheet(p) < 9.2f; };
+  EXPECT_EQ(scene.off_contact(beside).size(), 1u) << "a film passes by";
+  const auto fringe = [&](const glm::vec3& p) { return glm::length(p - kPore) < 4.5f; };
+  EXPECT_EQ(scene.off_contact(fringe).size(), 1u) << "of its own air";
 }
 
 TEST(KeepWhole, TheClayAtACavityIsOfOneSide) {
   const CavityScene scene(pore);
-  const std::vector<ClayCavity> off = cavities_off_contact(scene.rest(), scene.band, scene.faces);
+  const std::vector<ClayCavity> off = scene.off_contact();
   ASSERT_EQ(off.size(), 1u);
   for (const ClaySide most : {ClaySide::kTablet, ClaySide::kEnvelope}) {
     const ClaySide other = most == ClaySide::kTablet ? ClaySide::kEnvelope : ClaySide::kTablet;
@@ -133,7 +158,7 @@ TEST(KeepWhole, TheClayAtACavityIsOfOneSide) {
 
 TEST(DivideClay, GoesRoundACavityThatIsWhole) {
   const CavityScene scene(pore);
-  const auto off = cavities_off_contact(scene.rest(), scene.band, scene.faces);
+  const auto off = scene.off_contact();
   ASSERT_EQ(off.size(), 1u);
   // Clay that is dark by chance from the patch down to the pore, as wide as it.
   Dips dips;

@@ -134,6 +134,21 @@ TEST(PhantomContact, NothingIsSeenWhereTheEnvelopeFillsTheWedges) {
   EXPECT_LE(seen, filled / 5);  // pores and straw
 }
 
+TEST(PhantomContact, AFilmIsWhatIsNoWiderThanItWasAskedToBe) {
+  PhantomOptions options = small(Contact::kFilm);
+  options.film_vox = 0.4;
+  const auto phantom = make(options);
+  int films = 0, gaps = 0;
+  for (const Wedge& w : phantom->wedges()) {
+    if (w.owner != Owner::kTablet) continue;
+    const bool film = phantom->gap_width(w.position) <= 0.4 + 1e-6;
+    EXPECT_EQ(w.state, film ? WedgeCase::kFilm : WedgeCase::kFree);
+    ++(film ? films : gaps);
+  }
+  EXPECT_GT(films, 5);
+  EXPECT_GT(gaps, 20);
+}
+
 TEST(PhantomContact, PocketsAreFullOfAirAndClosed) {
   const auto phantom = make(small(Contact::kPockets));
   const Volume<float> volume = scan(phantom);
