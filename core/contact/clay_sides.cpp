@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "core/base/system/parallel.h"
 
@@ -33,6 +34,19 @@ bool height_tells(const ContactBand& band, const ContactBand::Node& node) { retu
 /// Far above or below the patch: surely envelope or tablet. Beside it nobody knows.
 bool at_border(const ContactBand& band, const ContactBand::Node& node) {
   return node.distance > band.reach_at(node.height) - 1.0f && std::abs(node.height) > 0.97f * node.distance;
+}
+
+/// Half of the reach and more under two patches that face away from each other: in the middle of a tablet that is
+/// thinner than both reaches, where nothing is at the border.
+bool in_the_middle(const ContactBand& band, std::uint32_t node) {
+  const auto deep = [&](std::uint32_t n) { return band.nodes[n].height < -0.5f * band.tablet_reach; };
+  if (!deep(node)) return false;
+  bool found = false;
+  each_beside(band.point(node), [&](const glm::ivec3& q) {
+    const std::uint32_t m = band.at(q);
+    found = found || (m != ContactBand::kNone && deep(m) && glm::dot(band.normal(node), band.normal(m)) < 0.0f);
+  });
+  return found;
 }
 
 template <class Visit>
@@ -190,7 +204,7 @@ void ClayDivision::add_points(const ClayEvidence& evidence) {
       const bool known = height_tells(band_, node);
       cut_.set_height(p, node.height);
       std::int32_t& wish = cut_.wish(p);
-      if (known && at_border(band_, node))
+      if (known && (at_border(band_, node) || in_the_middle(band_, n)))
         wish = node.height < 0.0f ? kHard : -kHard;
       else
         wish = capacity((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - (known ? kPull * node.height : 0.0f));

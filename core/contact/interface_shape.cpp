@@ -163,7 +163,10 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
 
   relax(mesh, rings, dual_positions, evidence, options.most);
   std::vector<float> follows(evidence.size());
-  for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? 1.0f : 0.0f;
+  for (std::size_t i = 0; i < follows.size(); ++i) {
+    const bool at_air = rings.all[i].size() != rings.added[i].size();  // its dip is none, but blurs the step
+    follows[i] = evidence[i] == kFilm && !(clay_step[i] && at_air) ? 1.0f : 0.0f;
+  }
   follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
               {.blur_variance = options.blur_variance, .clays = options.clays, .rules = options.rules});
   for (std::size_t i = 0; i < film.size(); ++i) film[i] = evidence[i] == kFilm && !clay_step[i];

@@ -21,6 +21,7 @@ namespace {
 
 constexpr float kReach = 12.0f;    ///< on both sides of the patch, grid steps
 constexpr float kCubeSide = 8.0f;  ///< of the places whose heights are taken together: wider than a wedge
+constexpr float kFar = 3.0f;       ///< grid steps that a sample has to come in a look for another
 constexpr float kThinned = 1.0f;   ///< cubes of which one sample is looked from at half of the resolution, its steps
 constexpr std::size_t kLeastCrossings = 24;
 constexpr float kAcross = 0.6f;  ///< cosine from which on a face lies along the contact
@@ -288,7 +289,7 @@ std::vector<std::uint32_t> around(const std::vector<std::uint32_t>& far, const s
 template <class Look>
 Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, ContactRules rules, const Look& look) {
   const int most_looks = rules.has(ContactRule::kLooks) ? 4 : 1;
-  const float far = scale * 0.5f * kReach;
+  const float far = scale * kFar;
   const std::vector<PatchPoint> before = samples;
   std::vector<PatchPoint> left_behind;
   std::vector<std::uint32_t> asked(samples.size());

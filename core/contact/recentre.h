@@ -22,7 +22,7 @@ struct Recentred {
 /// Moves samples of the patches along their normals to the ground of the contact, from which wedges go down: the clay
 /// within 12 grid steps of them is divided, and the heights of what divides it, of its upper part, are averaged over
 /// some 10 steps. Samples where no film shows move as far as those around them that know better, less with the
-/// distance. Those that move more than 6 steps, and what is within 24 of them, look anew from there, four times at
+/// distance. Those that move more than 3 steps, and what is within 24 of them, look anew from there, four times at
 /// most: a patch that cuts a corner of the tablet off may be 30 steps from it. `inside`: the signs of the grid;
 /// `density`: the scan on it, unfiltered. Deterministic for any thread count. Errors of `density`, kCancelled.
 Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,

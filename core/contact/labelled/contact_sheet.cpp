@@ -19,6 +19,7 @@ namespace {
 
 constexpr float kSheetReach = 1.8f;  ///< more than the half diagonal of a cell
 constexpr float kSameDistance = 1e-4f;
+constexpr std::uint32_t kLargePiece = 4096;  ///< nodes: more than a turned-over triangle gives to the other clay
 constexpr std::int64_t kNodesTogether = 1 << 14;
 constexpr int kSlabSlices = 8;  ///< of the grid, that one thread looks at
 
@@ -250,9 +251,16 @@ void follow_sheet(const ContactBand& band, const std::vector<float>& distances, 
     }
     add();
   });
+  std::vector<std::uint8_t> ends(side.size(), 0);  // of small pieces: is one of its nodes where the band ends?
   parallel_for(count, kNodesTogether, [&](std::int64_t i) {
     const auto n = static_cast<std::uint32_t>(i);
-    if (size[pieces.root(n)] < least) side[n] = before[n];
+    const std::uint32_t root = pieces.root(n);
+    if (size[root] < kLargePiece && at_end(n)) std::atomic_ref(ends[root]).store(1, std::memory_order_relaxed);
+  });
+  parallel_for(count, kNodesTogether, [&](std::int64_t i) {
+    const auto n = static_cast<std::uint32_t>(i);
+    const std::uint32_t root = pieces.root(n);
+    if (size[root] < least || (size[root] < kLargePiece && ends[root] == 0)) side[n] = before[n];
   });
 }
 

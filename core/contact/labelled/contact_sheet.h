@@ -27,8 +27,8 @@ std::vector<float> distances_from_sheet(const ContactBand& band, const Interface
 
 /// Sides as the sheet has them: of nodes near it by their distance; what lies between it and where it was, within
 /// `reach` steps of these, goes with them. Clay beside air, or beside what is not in the band, keeps its side: of that
-/// the faces of the surface have told more than the sheet can, whose rim is their work. What comes loose of its clay in
-/// pieces of fewer than `least` nodes stays as it was.
+/// the faces of the surface have told more than the sheet can, whose rim is their work. What comes loose of its clay,
+/// in pieces of fewer than `least` nodes or such that nowhere reach the end of the band, stays as it was.
 void follow_sheet(const ContactBand& band, const std::vector<float>& distances, int reach, std::size_t least,
                   std::vector<ClaySide>& side);
 
