@@ -53,5 +53,46 @@ TEST(ClayDivision, TheTabletOverAGapThatEndsInAWallIsNoEnvelope) {
   EXPECT_GT(lost_over_the_gap(end_of_gap(false)), 0.02) << "the patch goes straight on where it ends: nothing to do";
 }
 
+/// Clay, and patches along both faces of a slab of it, `thick` steps apart, with a reach of 10.
+ContactBand around_slab(int thick) {
+  BitVolume inside(Dims{kRoomEdge, kRoomEdge, kRoomEdge});
+  for (int z = 0; z < kRoomEdge; ++z)
+    for (int y = 0; y < kRoomEdge; ++y)
+      for (int x = 0; x < kRoomEdge; ++x) inside.set(x, y, z, true);
+  const float middle = 0.5f * kRoomEdge, half = 0.5f * static_cast<float>(thick);
+  std::vector<PatchPoint> samples;
+  for (int z = 4; z < kRoomEdge - 4; ++z)
+    for (int x = 4; x < kRoomEdge - 4; ++x)
+      for (const float out : {-1.0f, 1.0f})
+        samples.push_back({{static_cast<float>(x), middle + out * half, static_cast<float>(z)}, {0, out, 0}});
+  SilentProgress progress;
+  return ContactBand::make(inside, std::move(samples), 10.0f, progress).value();
+}
+
+TEST(ClayDivision, ATabletThinnerThanBothReachesIsFound) {
+  for (const int thick : {13, 16, 19, 23}) {
+    const ContactBand band = around_slab(thick);
+    const float film = 0.5f * static_cast<float>(thick) + 6.0f;  // from the middle: the patches miss it by 6 steps
+    Dips dips{std::vector<float>(band.nodes.size(), 0.0f), {}};
+    const auto from_middle = [&](std::uint32_t n) {
+      return std::abs(static_cast<float>(band.nodes[n].y) - 0.5f * kRoomEdge);
+    };
+    for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
+      if (std::abs(from_middle(n) - film) < 1.0f) dips.strength[n] = 3.0f;
+    SilentProgress progress;
+    const std::vector<ClaySide> side = ClayDivision({band, dips, {}, {}, {}}).sides(progress).value();
+    int all = 0, wrong = 0;
+    for (std::uint32_t n = 0; n < band.nodes.size(); ++n) {
+      const auto& node = band.nodes[n];
+      if (std::min(node.x, node.z) < 14 || std::max(node.x, node.z) > kRoomEdge - 14) continue;
+      if (std::abs(from_middle(n) - film) < 2.0f) continue;
+      ++all;
+      wrong += (from_middle(n) < film) != (side[n] == ClaySide::kTablet);
+    }
+    EXPECT_GT(all, 5000);
+    EXPECT_EQ(wrong, 0) << "of " << all << ", " << thick << " steps thick";
+  }
+}
+
 }  // namespace
 }  // namespace dubsar

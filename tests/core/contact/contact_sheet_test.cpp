@@ -71,6 +71,18 @@ TEST(ContactSheet, WhatLiesBetweenTheCutAndTheSheetChangesSides) {
   EXPECT_EQ(wrong, 0) << "of " << all;
 }
 
+TEST(ContactSheet, WhatATurnedTriangleGivesToTheOtherClayStaysAsItWas) {
+  const ContactBand band = band_of_clay();
+  std::vector<ClaySide> before(band.nodes.size());
+  std::vector<float> distances(band.nodes.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::uint32_t n = 0; n < before.size(); ++n)
+    before[n] = band.nodes[n].z > 22 ? ClaySide::kEnvelope : ClaySide::kTablet;
+  distances[band.at({20, 20, 16})] = 1.0f;  // what is four steps from it and less would go with it: 129 nodes
+  std::vector<ClaySide> side = before;
+  follow_sheet(band, distances, 4, 64, side);
+  EXPECT_EQ(side, before);
+}
+
 TEST(ContactSheet, ClayAtAirKeepsItsSide) {
   const ContactBand band = band_of_clay();
   const std::vector<ClaySide> before(band.nodes.size(), ClaySide::kTablet);
