@@ -86,8 +86,7 @@ TEST(Calls, WhatAHeaderOffersIsUsedByTheHouse) {
   const std::set<std::string> for_tests{
       "check_exactly",            // what is exported, counted by tests and benchmarks
       "coarse_views",             // of the picture that is shown
-      "in_contact",               // truth of a phantom
-      "nearest_part",             // the same
+      "nearest_part",             // truth of a phantom
       "on_tablet_side",           // the same
       "light_is_on",              // what a simulated device shows
       "line_name",                // for files of words

@@ -200,7 +200,7 @@ TEST(RecentreSamples, WhatIsKeptBetweenLooksIsWhatIsReadAnewForEach) {
     std::vector<PatchPoint> anew = kept;
     ASSERT_TRUE(recentre(kept, inside, kept_source, progress, {}).has_value());
     int looks = 0;
-    for (float longest = INFINITY; looks < 4 && longest > (half ? 12.0f : 6.0f); ++looks)
+    for (float longest = INFINITY; looks < 4 && longest > (half ? 6.0f : 3.0f); ++looks)
       longest =
           recentre(anew, inside, anew_source, progress, ContactRules().without(ContactRule::kLooks)).value().longest;
     ASSERT_GE(looks, 2);
