@@ -169,13 +169,16 @@ class BrickFaces {
 
  private:
   static constexpr int kEdge = LatticeBricks::kEdge, kPoints = LatticeBricks::kPoints;
+  static constexpr std::size_t kSide = kEdge + 1;
   static std::int32_t rounded(float positive) {  // as std::lround
-    return static_cast<std::int32_t>(static_cast<double>(positive) + 0.5);
+    const double half_more = static_cast<double>(positive) + 0.5;
+    return static_cast<std::int32_t>(half_more);
   }
   FacePoint& at(int x, int y, int z) {
-    return points_[static_cast<std::size_t>((z * (kEdge + 1) + y) * (kEdge + 1) + x)];
+    return points_[(static_cast<std::size_t>(z) * kSide + static_cast<std::size_t>(y)) * kSide +
+                   static_cast<std::size_t>(x)];
   }
-  std::array<FacePoint, (kEdge + 1) * (kEdge + 1) * (kEdge + 1)> points_{};
+  std::array<FacePoint, kSide * kSide * kSide> points_{};
 };
 
 }  // namespace
