@@ -8,8 +8,8 @@ namespace {
 
 /// Steps from the cavity between which its surroundings are looked at: nearer is the fringe of its own air.
 constexpr int kAroundFrom = 4, kAroundTo = 6;
-/// Strength that a tenth of the surroundings has where a film goes on, at least. Films of .35 to 1 voxel have 3.0 to
-/// 7.1 there at 17 and 22 dB; pores have .6 to 1.7 and straw up to 2.3, seldom 2.9 (six phantoms of 320x200x300).
+/// Strength that a tenth of the surroundings has where a film goes on, at least. Films of .5 and 1 voxel have 3.0 to
+/// 7.1 there at 17 and 22 dB; pores have .6 to 1.7 and straw up to 2.3, seldom 2.9 (docs/evidence.md).
 constexpr float kFilmAround = 2.65f;
 constexpr std::size_t kLeastAround = 100;  ///< nodes; fewer say nothing
 

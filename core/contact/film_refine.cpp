@@ -97,7 +97,7 @@ class Follower {
         density_(density),
         options_(options),
         start_(mesh.added),
-        share_(follows.share),
+        moves_(follows.moves),
         step_(follows.step),
         trust_(mesh.added.size(), 0.0f) {
     find_near();
@@ -113,7 +113,7 @@ class Follower {
     for (const float away : {-kQuiet, kQuiet}) {
       const std::vector<Profile> profiles = mean_profiles(away);
       for (std::size_t i = 0; i < profiles.size(); ++i)
-        if (share_[i] > 0.0f) depths.push_back(std::abs(depth_at(profiles[i], kReach)));
+        if (moves_[i]) depths.push_back(std::abs(depth_at(profiles[i], kReach)));
     }
     noise_ = 1.4826f * median(std::move(depths));
   }
@@ -124,7 +124,7 @@ class Follower {
     std::vector<float> ways(profiles.size(), 0.0f);
     each([&](std::size_t i) {
       trust_[i] = 0.0f;
-      if (share_[i] <= 0.0f) return;
+      if (!moves_[i]) return;
       const bool step = step_[i] && options_.clays;
       const Dip dip = step ? Dip{step_of(profiles[i], *options_.clays), std::abs(options_.clays->step())}
                            : nearest_dip(profiles[i]);
@@ -146,7 +146,7 @@ class Follower {
     for (int round = 0; round < kSettleRounds; ++round) {
       std::vector<float> ways(mesh_.added.size(), 0.0f);
       each([&](std::size_t i) {
-        if (share_[i] <= 0.0f || rings_.all[i].empty()) return;
+        if (!moves_[i] || rings_.all[i].empty()) return;
         const glm::vec3 off = mean_around(i) - mesh_.added[i];
         ways[i] = kSettle * (1.0f - trust_[i]) * glm::dot(off, normal_[i]);
       });
@@ -179,7 +179,8 @@ class Follower {
 
   void move(const std::vector<float>& ways, float most) {
     each([&](std::size_t i) {
-      const glm::vec3 way = mesh_.added[i] + share_[i] * ways[i] * normal_[i] - start_[i];
+      if (!moves_[i]) return;
+      const glm::vec3 way = mesh_.added[i] + ways[i] * normal_[i] - start_[i];
       const float length = glm::length(way);
       mesh_.added[i] = start_[i] + (length > most ? most / length : 1.0f) * way;
     });
@@ -189,9 +190,9 @@ class Follower {
   void spread() {
     std::vector<glm::vec3> moved = mesh_.added;
     each([&](std::size_t i) {
-      if (share_[i] <= 0.0f || rings_.all[i].empty()) return;
+      if (!moves_[i] || rings_.all[i].empty()) return;
       const glm::vec3 off = mean_around(i) - mesh_.added[i];
-      moved[i] += kSpread * share_[i] * (off - glm::dot(off, normal_[i]) * normal_[i]);
+      moved[i] += kSpread * (off - glm::dot(off, normal_[i]) * normal_[i]);
     });
     mesh_.added.swap(moved);
   }
@@ -223,9 +224,9 @@ class Follower {
   /// Those that move, and as many rings around them as anything is averaged over.
   void find_near() {
     constexpr int kMostRings = std::max({kProfileRings, kStepRings, kBendRings});
-    std::vector<bool> seen(share_.size(), false);
-    for (std::uint32_t i = 0; i < share_.size(); ++i)
-      if (share_[i] > 0.0f) {
+    std::vector<bool> seen(moves_.size(), false);
+    for (std::uint32_t i = 0; i < moves_.size(); ++i)
+      if (moves_[i]) {
         seen[i] = true;
         near_.push_back(i);
       }
@@ -276,7 +277,7 @@ class Follower {
   const BandDensity& density_;
   const FollowOptions& options_;
   std::vector<glm::vec3> start_, normal_;
-  const std::vector<float>& share_;  ///< of every move
+  const std::vector<bool>& moves_;
   const std::vector<bool>& step_;
   std::vector<std::uint32_t> near_;  ///< what is looked at
   std::vector<float> trust_;         ///< in the place of each dip, 0..1

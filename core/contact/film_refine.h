@@ -17,8 +17,8 @@ namespace dubsar {
 
 /// What each added vertex is to do.
 struct Following {
-  std::vector<float> share;  ///< of every move, 0..1
-  std::vector<bool> step;    ///< to where one clay becomes the other, not to a dip
+  std::vector<bool> moves;
+  std::vector<bool> step;  ///< to where one clay becomes the other, not to a dip
 };
 struct FollowOptions {
   float most = 3.0f;            ///< steps that a vertex is moved to dips: cuts stop short of the tips of wedges

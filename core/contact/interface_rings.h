@@ -72,6 +72,9 @@ struct InterfaceRings {
   IdLists added;  ///< those of them that were added, as indices into `mesh.added`
   VertexFans fans;
 
+  /// Has an added vertex neighbours that belong to the surface of the air, too?
+  bool at_air(std::size_t i) const noexcept { return all[i].size() != added[i].size(); }
+
   InterfaceRings(const InterfaceMesh& mesh, std::uint32_t dual) : fans(mesh, dual) {
     struct Neighbour {
       std::uint32_t id;

@@ -35,7 +35,7 @@ constexpr std::uint8_t kFilm = evidence_byte(Evidence::kFilm), kInferred = evide
 /// Is a vertex within kRim rings of the surface?
 std::vector<bool> rim_of(const InterfaceRings& rings) {
   std::vector<bool> rim(rings.all.size());
-  for (std::size_t i = 0; i < rim.size(); ++i) rim[i] = rings.all[i].size() != rings.added[i].size();
+  for (std::size_t i = 0; i < rim.size(); ++i) rim[i] = rings.at_air(i);
   for (int ring = 1; ring < kRim; ++ring) {
     const std::vector<bool> inner = rim;
     for (std::size_t i = 0; i < rim.size(); ++i)
@@ -162,12 +162,10 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   }
 
   relax(mesh, rings, dual_positions, evidence, options.most);
-  std::vector<float> follows(evidence.size());
-  for (std::size_t i = 0; i < follows.size(); ++i) {
-    const bool at_air = rings.all[i].size() != rings.added[i].size();  // its dip is none, but blurs the step
-    follows[i] = evidence[i] == kFilm && !(clay_step[i] && at_air) ? 1.0f : 0.0f;
-  }
-  follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
+  std::vector<bool> moves(evidence.size());
+  for (std::size_t i = 0; i < moves.size(); ++i)  // air hides the step of the clays beside it
+    moves[i] = evidence[i] == kFilm && !(clay_step[i] && rings.at_air(i));
+  follow_dips(mesh, rings, dual_positions, {moves, clay_step}, density,
               {.blur_variance = options.blur_variance, .clays = options.clays, .rules = options.rules});
   for (std::size_t i = 0; i < film.size(); ++i) film[i] = evidence[i] == kFilm && !clay_step[i];
   const std::vector<bool> doubtful = doubtful_dents(mesh, rings, dual_positions, film, options.plain, options.rules);

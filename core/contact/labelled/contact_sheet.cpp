@@ -259,6 +259,7 @@ void follow_sheet(const ContactBand& band, const std::vector<float>& distances, 
   });
   parallel_for(count, kNodesTogether, [&](std::int64_t i) {
     const auto n = static_cast<std::uint32_t>(i);
+    if (side[n] == before[n]) return;
     const std::uint32_t root = pieces.root(n);
     if (size[root] < least || (size[root] < kLargePiece && ends[root] == 0)) side[n] = before[n];
   });

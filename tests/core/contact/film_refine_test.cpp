@@ -21,15 +21,15 @@ InterfaceMesh lifted_sheet(const FilmScene& scene) {
   });
 }
 
-Following all_follow(const InterfaceMesh& mesh, float share) {
-  return {std::vector<float>(mesh.added.size(), share), std::vector<bool>(mesh.added.size(), false)};
+Following all_follow(const InterfaceMesh& mesh, bool moves) {
+  return {std::vector<bool>(mesh.added.size(), moves), std::vector<bool>(mesh.added.size(), false)};
 }
 
 TEST(FollowDips, AFilmAlongATiltedPlaneIsFoundToAFractionOfAStep) {
   const FilmScene scene;
   InterfaceMesh mesh = lifted_sheet(scene);
   const InterfaceRings rings(mesh, 0);
-  follow_dips(mesh, rings, {}, all_follow(mesh, 1.0f), scene.density(), {.most = 2.5f});
+  follow_dips(mesh, rings, {}, all_follow(mesh, true), scene.density(), {.most = 2.5f});
   // Trilinear samples are wrong by f''/8 at most (along axis i the second derivative is that across the film times
   // n_i^2, and these add up to 1). The vertex of the parabola through three samples h = .5 apart is off by
   // h/2 * (f''/8) / (f'' h^2) = 1 / (16 h) then, before anything is averaged.
@@ -49,12 +49,12 @@ TEST(FollowDips, WhatIsNotToFollowStaysToTheBit) {
   const FilmScene scene;
   InterfaceMesh mesh = lifted_sheet(scene);
   const std::vector<glm::vec3> before = mesh.added;
-  Following follows = all_follow(mesh, 0.0f);
-  for (std::size_t i = 0; i < follows.share.size() / 2; ++i) follows.share[i] = 1.0f;
+  Following follows = all_follow(mesh, false);
+  for (std::size_t i = 0; i < follows.moves.size() / 2; ++i) follows.moves[i] = true;
   follow_dips(mesh, InterfaceRings(mesh, 0), {}, follows, scene.density(), {.most = 2.5f});
   int moved = 0;
-  for (std::size_t i = 0; i < follows.share.size(); ++i) {
-    if (follows.share[i] == 0.0f)
+  for (std::size_t i = 0; i < follows.moves.size(); ++i) {
+    if (!follows.moves[i])
       EXPECT_EQ(mesh.added[i], before[i]);
     else
       moved += mesh.added[i] != before[i];
@@ -67,7 +67,7 @@ float error_after(const FilmScene& scene) {
   InterfaceMesh mesh = sheet(kFilmEdge, [&](int x, int y) {
     return scene.at(static_cast<float>(x - kFilmMiddle), static_cast<float>(y - kFilmMiddle), 0.0f);
   });
-  follow_dips(mesh, InterfaceRings(mesh, 0), {}, all_follow(mesh, 1.0f), scene.density(), {.most = 2.5f});
+  follow_dips(mesh, InterfaceRings(mesh, 0), {}, all_follow(mesh, true), scene.density(), {.most = 2.5f});
   float sum = 0.0f;
   for (int y = 1; y + 1 < kFilmEdge; ++y)
     for (int x = 1; x + 1 < kFilmEdge; ++x) {
@@ -148,7 +148,7 @@ TEST(FollowDips, TheTipOfADentIsFollowedDown) {
     return std::min_element(mesh.added.begin(), mesh.added.end(), [](auto& a, auto& b) { return a.z < b.z; })->z;
   };
   const float before = DentScene::kTop - lowest();
-  follow_dips(mesh, InterfaceRings(mesh, 0), {}, all_follow(mesh, 1.0f), DentScene::density(),
+  follow_dips(mesh, InterfaceRings(mesh, 0), {}, all_follow(mesh, true), DentScene::density(),
               {.blur_variance = DentScene::kBlur * DentScene::kBlur});
   EXPECT_LT(before, 0.8f * DentScene::kDepth);
   EXPECT_GT(DentScene::kTop - lowest(), 0.82f * DentScene::kDepth) << before << " before";

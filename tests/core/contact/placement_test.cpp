@@ -40,9 +40,8 @@ InterfaceMesh divided_sheet(const FilmScene& scene, bool other_way) {
 
 /// Where a mesh comes to lie in the film.
 std::vector<glm::vec3> followed(InterfaceMesh mesh, const FilmScene& scene) {
-  const std::vector<float> share(mesh.added.size(), 1.0f);
-  const std::vector<bool> step(mesh.added.size(), false);
-  follow_dips(mesh, InterfaceRings(mesh, 0), {}, {share, step}, scene.density(), {.most = 2.5f});
+  const std::vector<bool> moves(mesh.added.size(), true), step(mesh.added.size(), false);
+  follow_dips(mesh, InterfaceRings(mesh, 0), {}, {moves, step}, scene.density(), {.most = 2.5f});
   return mesh.added;
 }
 
